@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+#include "grid/sweep.h"
+
+#include <math.h>
+#include <stdint.h>
+
+double cf_sum_ordered(const double *v, const ptrdiff_t n) {
+  if (n <= 8) {
+    double sum = 0;
+    for (ptrdiff_t i = 0; i < n; ++i) sum += v[i];
+    return sum;
+  }
+  return cf_sum_ordered(v, n / 2) + cf_sum_ordered(v + n / 2, n - n / 2);
+}
+
+CF_CLONES static double sum_row(const int n, const cf_real *f) {
+  double lane[CF_SUM_LANES] = {0};
+  int i = 0;
+  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
+    for (int l = 0; l < CF_SUM_LANES; ++l) lane[l] += (double)f[i + l];
+  for (int l = 0; i < n; ++i, ++l) lane[l] += (double)f[i];
+  return cf_sum_lanes(lane);
+}
+
+cf_range cf_sweep_range(const cf_box *b, const int threads, const cf_real *f, double *rows) {
+  const ptrdiff_t count = cf_box_rows(b);
+  CF_PARALLEL_ROWS(b, threads, r) {
+    const cf_real *row = f + cf_box_row(b, r);
+    cf_real least = row[0], largest = row[0];
+    for (int i = 0; i < b->n[0]; ++i) {
+      least = row[i] < least ? row[i] : least;
+      largest = row[i] > largest ? row[i] : largest;
+    }
+    rows[r] = sum_row(b->n[0], row);
+    rows[count + r] = (double)least;
+    rows[2 * count + r] = (double)largest;
+  }
+  cf_range range = {cf_sum_ordered(rows, count), rows[count], rows[2 * count]};
+  for (ptrdiff_t r = 0; r < count; ++r) {
+    range.min = CF_MIN(range.min, rows[count + r]);
+    range.max = CF_MAX(range.max, rows[2 * count + r]);
+  }
+  return range;
+}
+
+int cf_sweep_finite(const cf_box *b, const int threads, const cf_real *f, int where[3]) {
+  ptrdiff_t bad = PTRDIFF_MAX;
+#pragma omp parallel for schedule(static) num_threads(cf_sweep_threads(b, threads)) reduction(min : bad)
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r) {
+    const cf_real *row = f + cf_box_row(b, r);
+    cf_real zero = 0; /* 0 * x is not 0 only where x is not finite */
+    for (int i = 0; i < b->n[0]; ++i) zero += row[i] * 0;
+    if (!(zero == 0) && r < bad) bad = r;
+  }
+  if (bad == PTRDIFF_MAX) return 1;
+  const cf_real *row = f + cf_box_row(b, bad);
+  int i = 0;
+  while (i + 1 < b->n[0] && isfinite((double)row[i])) ++i;
+  where[0] = i;
+  where[1] = (int)(bad % b->n[1]);
+  where[2] = (int)(bad / b->n[1]);
+  return 0;
+}
