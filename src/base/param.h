@@ -87,14 +87,15 @@ typedef struct cf_param_constants { /* names for numbers, in the order given */
   double *value;
 } cf_param_constants;
 
-#define CF_PARAM_TYPE_LIST(T)                                                               \
-  T(number, "number") T(number_or_auto, "number or auto") T(integer, "whole number")        \
-  T(flag, "true or false") T(word, "word") T(words, "list of words") T(text, "text")        \
-  T(key, "name") T(texts, "list of texts") T(numbers, "list of numbers")                    \
-  T(numbers_or_auto, "list of numbers, or auto") T(integers, "list of whole numbers")       \
-  T(function, "number or expression") T(functions, "expression, or one an axis")            \
-  T(walls, "walls") T(interval, "interval") T(constants, "map of names to numbers")         \
-  T(record, "map") T(optional, "map") T(list, "list of maps") T(map, "map of names to maps")
+#define CF_PARAM_TYPE_LIST(T)                                                                             \
+  T(number, "number")                                                                                     \
+  T(number_or_auto, "number or auto") T(integer, "whole number") T(flag, "true or false") T(word, "word") \
+      T(words, "list of words") T(text, "text") T(key, "name") T(texts, "list of texts")                  \
+          T(numbers, "list of numbers") T(numbers_or_auto, "list of numbers, or auto")                    \
+              T(integers, "list of whole numbers") T(function, "number or expression")                    \
+                  T(functions, "expression, or one an axis") T(walls, "walls") T(interval, "interval")    \
+                      T(constants, "map of names to numbers") T(record, "map") T(optional, "map")         \
+                          T(list, "list of maps") T(map, "map of names to maps")
 
 typedef enum cf_param_type {
 #define CF_PARAM_TYPE_ENUM(type, what) CF_PARAM_##type,
@@ -156,10 +157,11 @@ void cf_param_items_set(void *member, cf_param_items items);
  *     CF_PARAM_TABLE(cf_scene_time, CF_TIME_TABLE)
  *     #undef CF_PARAM_STRUCT
  * makes the constant cf_scene_time_table. Tables of sub-records come first. */
-#define CF_PARAM_TABLE(record, TABLE)                                           \
-  static const cf_param record##_rows[] = {TABLE(CF_PARAM_ROW, CF_RECORD_ROW)}; \
-  const cf_param_table record##_table = {                                       \
-      .size = sizeof(record), .count = (int)(sizeof record##_rows / sizeof record##_rows[0]), .param = record##_rows};
+#define CF_PARAM_TABLE(record, TABLE)                                                                    \
+  static const cf_param record##_rows[] = {TABLE(CF_PARAM_ROW, CF_RECORD_ROW)};                          \
+  const cf_param_table record##_table = {.size = sizeof(record),                                         \
+                                         .count = (int)(sizeof record##_rows / sizeof record##_rows[0]), \
+                                         .param = record##_rows};
 
 #define CF_PARAM_ROW(name_, type_, fallback_, unit_, range_, doc_) \
   {.name = #name_,                                                 \
@@ -181,7 +183,8 @@ void cf_param_items_set(void *member, cf_param_items items);
    .doc = (doc_),                                   \
    .table = &record_##_table},
 
-/* Words from a list W(UPPER, lower): the text for the column `range`, and the enum with a prefix of its own. */
+/* Words from a list W(UPPER, lower): the text for the column `range`, and the enum with a prefix of its own.
+ */
 #define CF_WORD_TEXT(upper, lower) #lower "|"
 #define CF_WORDS(LIST)             LIST(CF_WORD_TEXT)
 
@@ -197,7 +200,8 @@ const cf_param *cf_param_find_path(const cf_param_table *root, const char *path)
 /* The row of the table whose name is most like `name`, if one is like enough to be meant; else NULL. */
 const char *cf_param_nearest(const cf_param_table *table, const char *name);
 
-/* The path of the row whose name is most like the last part of `path`, in the whole tree, written to `nearest`
+/* The path of the row whose name is most like the last part of `path`, in the whole tree, written to
+ * `nearest`
  * (`size` bytes); false: nothing is like it. */
 bool cf_param_nearest_path(const cf_param_table *root, const char *path, char *nearest, size_t size);
 

@@ -5,8 +5,8 @@
  * What may stand in one: numbers, + - * / ^, comparisons, && ||, C ? A : B, parentheses, the constant pi, the
  * constants handed in, and the functions of CF_EXPR_FUNCTIONS. No assignment, one value only.
  *
- * An expression in which no variable stands becomes a constant cf_fn. Evaluation goes by rows and takes a lock,
- * because the parser keeps its variables inside: calling from several threads is safe and not faster.
+ * An expression in which no variable stands becomes a constant cf_fn. Evaluation goes by rows and takes a
+ * lock, because the parser keeps its variables inside: calling from several threads is safe and not faster.
  * At about 40 ns a point: sample what does not depend on t once (cf_fn.in_time says).
  */
 #ifndef CF_IO_EXPR_H
@@ -46,8 +46,8 @@ void cf_expr_destroy(cf_expr *expr); /* NULL is fine */
 /* The function; it lives as long as the expression (a constant one needs nothing any more). */
 cf_fn cf_expr_fn(const cf_expr *expr);
 
-/* Whether `name` may be the name of a constant: letters, digits, _, not starting with a digit, and none of the
- * variables, functions and pi. CF_BAD_ARGUMENT says why not. */
+/* Whether `name` may be the name of a constant: letters, digits, _, not starting with a digit, and none of
+ * the variables, functions and pi. CF_BAD_ARGUMENT says why not. */
 cf_status cf_expr_name_check(const char *name);
 
 #endif

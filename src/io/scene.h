@@ -38,21 +38,23 @@ typedef struct cf_overrides {
   const char *const *set;
 } cf_overrides;
 
-/* Reads the file at `path` into `record`, a zeroed struct of the table `root`. The root table must have a member
- * `let` of type constants if scenes may name constants. CF_BAD_SCENE for everything that is wrong with the file,
- * a file that is not there included. On failure nothing is left behind. */
+/* Reads the file at `path` into `record`, a zeroed struct of the table `root`. The root table must have a
+ * member `let` of type constants if scenes may name constants. CF_BAD_SCENE for everything that is wrong with
+ * the file, a file that is not there included. On failure nothing is left behind. */
 cf_status cf_config_read(cf_config **config, const cf_param_table *root, void *record, const char *path,
                          const cf_overrides *overrides);
 
 /* Frees the tree and everything the structs point to; NULL is fine. */
 void cf_config_destroy(cf_config *config);
 
-const char *cf_config_path(const cf_config *config);   /* as it was given */
-const char *cf_config_folder(const cf_config *config); /* what paths in the scene are relative to; "." at least */
+const char *cf_config_path(const cf_config *config); /* as it was given */
+const char *cf_config_folder(
+    const cf_config *config); /* what paths in the scene are relative to; "." at least */
 
-/* CF_BAD_SCENE with a sentence at the place of `key` ("diffusion.k", "sources.0.rate", "domain.cells.1"), or of the
- * nearest enclosing key that was written down. The message names the key only if the sentence does. */
-cf_status cf_config_fail_at(const cf_config *config, const char *key, const char *format, ...) CF_PRINTF(3, 4);
+/* CF_BAD_SCENE with a sentence at the place of `key` ("diffusion.k", "sources.0.rate", "domain.cells.1"), or
+ * of the nearest enclosing key that was written down. The message names the key only if the sentence does. */
+cf_status cf_config_fail_at(const cf_config *config, const char *key, const char *format, ...)
+    CF_PRINTF(3, 4);
 
 /* Whether the file or an override has `key`. */
 bool cf_config_has(const cf_config *config, const char *key);
@@ -64,8 +66,8 @@ cf_status cf_config_fill(cf_config *config, const cf_param_table *table, void *r
 cf_status cf_config_new(cf_config *config, void **block, size_t bytes);
 cf_status cf_config_text(cf_config *config, const char **text, const char *format, ...) CF_PRINTF(3, 4);
 
-/* The struct as YAML, with every default filled in, such that reading it again gives the same struct: numbers with
- * 17 digits, expressions as given. The text is the caller's: cf_free. */
+/* The struct as YAML, with every default filled in, such that reading it again gives the same struct: numbers
+ * with 17 digits, expressions as given. The text is the caller's: cf_free. */
 cf_status cf_config_write(const cf_param_table *root, const void *record, char **text);
 
 /* What the tables say about `key`, or about all keys if it is NULL. The text is the caller's: cf_free.
