@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Making the hierarchy: every axis that still has the smallest spacing is halved (in a 512 x 4 box the short
+ * axis is used up after two levels), until a line is left, which is solved directly.
+ */
+#include "solve/multigrid.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "grid/sweep.h"
+#include "solve/line.h"
+#include "solve/pcg.h"
+#include "solve/transfer.h"
+
+/* On the coarsest level: so far beyond any outer tolerance that its error is no part of the cycle's. */
+#define COARSEST_TOLERANCE 1e-8
+/* Where diffusion adds less than this to the diagonal, Gauss-Seidel alone is enough. */
+#define STIFF_ENOUGH 3.0
+
+void cf_level_clear(const cf_level *l, const cf_cell x) {
+  CF_PARALLEL_ROWS(&l->box, l->threads, r)
+  memset(x.at + cf_box_row(&l->box, r), 0, (size_t)l->box.n[0] * sizeof(cf_real));
+}
+
+static void level_destroy(cf_level *l, const bool finest) {
+  for (int a = 0; a < 3; ++a) {
+    cf_axis_clear(&l->axis[a]);
+    cf_pairing_clear(&l->pairing[a]);
+  }
+  cf_cell_destroy(&l->r, &l->box);
+  if (!finest) {
+    cf_cell_destroy(&l->x, &l->box);
+    cf_cell_destroy(&l->b, &l->box);
+    cf_cell_destroy(&l->alpha_cell, &l->box);
+    cf_face_destroy(&l->beta, &l->box);
+  }
+  cf_free(l->rows);
+}
+
+void cf_helmholtz_destroy(cf_helmholtz *A) {
+  if (A == NULL) return;
+  cf_cell_destroy(&A->r, &A->grid.box);
+  cf_cell_destroy(&A->p, &A->grid.box);
+  cf_cell_destroy(&A->Ap, &A->grid.box);
+  cf_cell_destroy(&A->z, &A->grid.box);
+  if (A->coarse_level >= 0)
+    for (int v = 0; v < 3; ++v) cf_cell_destroy(&A->coarse[v], &A->level[A->coarse_level].box);
+  if (A->owns_alpha) cf_cell_destroy(&A->level[0].alpha_cell, &A->grid.box);
+  if (A->owns_beta) cf_face_destroy(&A->level[0].beta, &A->grid.box);
+  for (int l = 0; l < A->levels; ++l) level_destroy(&A->level[l], l == 0);
+  cf_free(A->scratch);
+  cf_free(A->line);
+  cf_free(A);
+}
+
+static void level_seams(cf_level *l) {
+  for (int a = 0; a < l->box.dim; ++a)
+    if (l->axis[a].periodic) {
+      l->has_seam = true;
+      l->wrap.rule[a][0] = l->wrap.rule[a][1] = CF_HALO_WRAP;
+    }
+}
+
+static cf_status finest_create(cf_helmholtz *A, cf_level *l) {
+  l->box = A->grid.box;
+  l->threads = A->grid.threads;
+  for (int a = 0; a < l->box.dim; ++a)
+    CF_TRY(cf_axis_create(&l->axis[a], l->box.n[a], A->grid.h, A->walls.kind[a]));
+  level_seams(l);
+  A->outside = l->wrap;
+  for (int a = 0; a < l->box.dim; ++a)
+    for (int side = 0; side < 2; ++side)
+      if (!l->axis[a].periodic) A->outside.rule[a][side] = CF_HALO_ZERO;
+  CF_TRY(cf_cell_create(&l->r, &l->box));
+  return CF_NEW(&l->rows, 2 * cf_box_rows(&l->box));
+}
+
+/* The axes with the smallest spacing among those that still have cells to join. */
+static bool axes_to_coarsen(const cf_level *l, bool coarsened[3]) {
+  double smallest = INFINITY;
+  for (int a = 0; a < l->box.dim; ++a)
+    if (l->axis[a].n > 1) smallest = CF_MIN(smallest, l->axis[a].width[0]);
+  for (int a = 0; a < l->box.dim; ++a)
+    coarsened[a] = l->axis[a].n > 1 && l->axis[a].width[0] <= 1.5 * smallest;
+  return smallest < INFINITY;
+}
+
+static cf_status coarser_create(cf_helmholtz *A, cf_level *fine, const bool coarsened[3], cf_level *l) {
+  int n[3] = {1, 1, 1};
+  for (int a = 0; a < fine->box.dim; ++a) n[a] = coarsened[a] ? fine->box.n[a] / 2 : fine->box.n[a];
+  CF_TRY(cf_box_init(&l->box, fine->box.dim, n, 1));
+  l->threads = fine->threads;
+  for (int a = 0; a < fine->box.dim; ++a)
+    CF_TRY(cf_axis_coarsen(&fine->axis[a], coarsened[a], A->grid.h, &fine->pairing[a], &l->axis[a]));
+  level_seams(l);
+  CF_TRY(cf_cell_create(&l->x, &l->box));
+  CF_TRY(cf_cell_create(&l->b, &l->box));
+  CF_TRY(cf_cell_create(&l->r, &l->box));
+  return CF_NEW(&l->rows, 2 * cf_box_rows(&l->box));
+}
+
+static cf_status hierarchy_create(cf_helmholtz *A) {
+  const cf_box *box = &A->grid.box;
+  A->levels = 1;
+  CF_TRY(finest_create(A, &A->level[0]));
+  bool coarsened[3];
+  while (!cf_level_is_line(&A->level[A->levels - 1]) && axes_to_coarsen(&A->level[A->levels - 1], coarsened) && A->levels < CF_LEVELS_MAX &&
+         (A->wanted == 0 || A->levels < A->wanted)) {
+    ++A->levels; /* counted first, so that a failure within frees it */
+    CF_TRY(coarser_create(A, &A->level[A->levels - 2], coarsened, &A->level[A->levels - 1]));
+  }
+  CF_TRY(cf_cell_create(&A->r, box));
+  CF_TRY(cf_cell_create(&A->p, box));
+  CF_TRY(cf_cell_create(&A->Ap, box));
+  CF_TRY(cf_cell_create(&A->z, box));
+  CF_TRY(CF_NEW(&A->line, 5 * CF_MAX(box->n[0], CF_MAX(box->n[1], box->n[2]))));
+  return CF_NEW(&A->scratch, (ptrdiff_t)A->grid.threads * (box->n[0] + 2));
+}
+
+cf_status cf_helmholtz_create(cf_helmholtz **A, const cf_grid *g, const cf_walls *walls, const int levels) {
+  *A = NULL;
+  for (int a = 0; a < g->box.dim; ++a)
+    if ((walls->kind[a][0] == CF_WALL_PERIODIC) != (walls->kind[a][1] == CF_WALL_PERIODIC))
+      return cf_fail(CF_BAD_ARGUMENT, "walls of axis %d: periodic on one side only", a);
+  cf_helmholtz *fresh;
+  CF_TRY(CF_NEW(&fresh, 1));
+  fresh->grid = *g;
+  fresh->walls = *walls;
+  fresh->wanted = levels;
+  fresh->coarse_level = -1;
+  const cf_status s = hierarchy_create(fresh);
+  if (s != CF_OK) {
+    cf_helmholtz_destroy(fresh);
+    return s;
+  }
+  *A = fresh;
+  return cf_helmholtz_set(fresh, &(cf_coefficients){.alpha = 1, .beta = 0});
+}
+
+/* --- coefficients ------------------------------------------------------------------------------------- */
+
+static void set_tables(cf_level *l, const double alpha, const double beta) {
+  l->alpha = alpha;
+  for (int a = 0; a < l->box.dim; ++a)
+    for (int i = 0; i < l->axis[a].n; ++i) {
+      l->axis[a].lo[i] = (cf_real)(beta * l->axis[a].lo1[i]);
+      l->axis[a].hi[i] = (cf_real)(beta * l->axis[a].hi1[i]);
+    }
+}
+
+static void fill_cells(const cf_level *l, const double value, const cf_cell f) {
+  for (ptrdiff_t r = 0; r < cf_box_rows(&l->box); ++r)
+    for (int i = 0; i < l->box.n[0]; ++i) f.at[cf_box_row(&l->box, r) + i] = (cf_real)value;
+}
+
+static void fill_faces(const cf_level *l, const double value, const cf_face f) {
+  for (int a = 0; a < l->box.dim; ++a)
+    for (int k = 0; k < cf_box_extent(&l->box, 2, a); ++k)
+      for (int j = 0; j < cf_box_extent(&l->box, 1, a); ++j)
+        for (int i = 0; i < cf_box_extent(&l->box, 0, a); ++i)
+          f.at[a][cf_box_at(&l->box, i, j, k)] = (cf_real)value;
+}
+
+/* Level 0 reads the caller's fields in place; a number beside a field becomes a field of our own. */
+static cf_status set_finest_fields(cf_helmholtz *A, const cf_coefficients *c) {
+  cf_level *l = &A->level[0];
+  const cf_box *box = &l->box;
+  if (c->alpha_at != NULL) {
+    if (A->owns_alpha) cf_cell_destroy(&l->alpha_cell, box);
+    A->owns_alpha = false;
+    l->alpha_cell = *c->alpha_at;
+  } else {
+    if (!A->owns_alpha) CF_TRY(cf_cell_create(&l->alpha_cell, box));
+    A->owns_alpha = true;
+    fill_cells(l, c->alpha, l->alpha_cell);
+  }
+  if (c->beta_at != NULL) {
+    if (A->owns_beta) cf_face_destroy(&l->beta, box);
+    A->owns_beta = false;
+    l->beta = *c->beta_at;
+  } else {
+    if (!A->owns_beta) CF_TRY(cf_face_create(&l->beta, box));
+    A->owns_beta = true;
+    fill_faces(l, c->beta, l->beta);
+  }
+  return CF_OK;
+}
+
+static cf_status set_variable(cf_helmholtz *A, const cf_coefficients *c) {
+  CF_TRY(set_finest_fields(A, c));
+  for (int l = 0; l < A->levels; ++l) {
+    cf_level *level = &A->level[l];
+    if (l > 0) {
+      if (level->alpha_cell.at == NULL) CF_TRY(cf_cell_create(&level->alpha_cell, &level->box));
+      if (level->beta.at[0] == NULL) CF_TRY(cf_face_create(&level->beta, &level->box));
+      cf_level_restrict(&A->level[l - 1], A->level[l - 1].alpha_cell, level, level->alpha_cell, A->scratch);
+      cf_level_restrict_faces(&A->level[l - 1], level);
+    }
+    set_tables(level, 0, 1);
+    level->variable = true;
+  }
+  A->depth = A->levels;
+  return CF_OK;
+}
+
+static void set_constant(cf_helmholtz *A, const cf_coefficients *c) {
+  for (int l = 0; l < A->levels; ++l) {
+    set_tables(&A->level[l], c->alpha, c->beta);
+    A->level[l].variable = false;
+  }
+  A->depth = 1;
+  while (A->depth < A->levels && cf_level_stiffness(&A->level[A->depth - 1]) > STIFF_ENOUGH) ++A->depth;
+}
+
+static bool has_held_wall(const cf_helmholtz *A) {
+  for (int a = 0; a < A->grid.box.dim; ++a)
+    for (int side = 0; side < 2; ++side)
+      if (cf_wall_is_held(A->walls.kind[a][side])) return true;
+  return false;
+}
+
+static cf_status shape_coarsest(cf_helmholtz *A) {
+  const int coarsest = A->depth - 1;
+  if (A->coarse_level == coarsest || coarsest == 0) return CF_OK;
+  for (int v = 0; v < 3 && A->coarse_level >= 0; ++v)
+    cf_cell_destroy(&A->coarse[v], &A->level[A->coarse_level].box);
+  A->coarse_level = coarsest;
+  for (int v = 0; v < 3; ++v) CF_TRY(cf_cell_create(&A->coarse[v], &A->level[coarsest].box));
+  return CF_OK;
+}
+
+cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
+  if (!(c->alpha >= 0) || !(c->beta >= 0) || !isfinite(c->alpha) || !isfinite(c->beta))
+    return cf_fail(CF_BAD_ARGUMENT, "alpha = %g, beta = %g: must be finite and not negative", c->alpha, c->beta);
+  const bool variable = c->alpha_at != NULL || c->beta_at != NULL;
+  if (variable)
+    CF_TRY(set_variable(A, c));
+  else
+    set_constant(A, c);
+  const bool no_alpha = c->alpha_at == NULL ? c->alpha == 0 : cf_level_sum(&A->level[0], *c->alpha_at) == 0;
+  A->singular = no_alpha && !has_held_wall(A);
+  return shape_coarsest(A);
+}
+
+/* --- the cycle ---------------------------------------------------------------------------------------- */
+
+/* omega = 1 + (share of diffusion in the diagonal)^2 / 5. */
+static cf_real relaxation(const cf_level *l) {
+  const double s = cf_level_stiffness(l), share = isinf(s) ? 1 : s / (1 + s);
+  return (cf_real)(1 + 0.2 * share * share);
+}
+
+static void cycle(cf_helmholtz *A, const int at, const cf_cell b, const cf_cell x) {
+  cf_level *l = &A->level[at];
+  if (cf_level_is_line(l)) {
+    cf_level_solve_line(l, A->singular, b, A->line, x);
+    return;
+  }
+  cf_level_clear(l, x);
+  if (at == A->depth - 1 && at > 0) {
+    const cf_solve_options o = {COARSEST_TOLERANCE, 4 * (int)CF_MIN(cf_box_cells(&l->box), 1000)};
+    cf_pcg_plain(l, A->singular, b, &o, A->coarse, x);
+    return;
+  }
+  const cf_real omega = relaxation(l);
+  cf_level_smooth(l, b, omega, x);
+  if (at < A->depth - 1) {
+    cf_level *below = &A->level[at + 1];
+    cf_level_residual(l, x, b, l->r);
+    cf_level_restrict(l, l->r, below, below->b, A->scratch);
+    cycle(A, at + 1, below->b, below->x);
+    cf_level_prolong(below, below->x, l, x, A->scratch);
+  }
+  cf_level_smooth(l, b, omega, x);
+}
+
+void cf_multigrid_cycle(cf_helmholtz *A, const cf_cell r, const cf_cell z) { cycle(A, 0, r, z); }

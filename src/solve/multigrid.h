@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The hierarchy of levels behind an operator, and one V-cycle over it.
+ */
+#ifndef CF_SOLVE_MULTIGRID_H
+#define CF_SOLVE_MULTIGRID_H
+
+#include "solve/helmholtz.h"
+#include "solve/level.h"
+
+#define CF_LEVELS_MAX 40
+
+struct cf_helmholtz {
+  cf_grid grid;
+  cf_walls walls;     /* kinds */
+  int levels, wanted; /* levels made; asked for by the caller, 0: as needed */
+  int depth;          /* levels that the present coefficients use */
+  cf_level level[CF_LEVELS_MAX];
+  cf_halo outside; /* what a caller's x must hold beyond the walls: the other side, or 0 */
+  bool singular;   /* alpha = 0 and no held wall */
+  bool owns_alpha, owns_beta; /* level 0's fields are ours, filled with a number */
+  cf_cell r, p, Ap, z;        /* of conjugate gradients on the finest level */
+  cf_cell coarse[3];          /* the same on the coarsest */
+  int coarse_level;           /* for which `coarse` is shaped; -1: none yet */
+  cf_real *scratch;           /* rows for the transfers, one a thread */
+  double *line;               /* work of the coarsest level's direct solution */
+};
+
+/* z = one V-cycle on A z = r from z = 0. */
+void cf_multigrid_cycle(cf_helmholtz *A, cf_cell r, cf_cell z);
+
+/* Sets the vector to zero on the cells of the box. */
+void cf_level_clear(const cf_level *l, cf_cell x);
+
+#endif

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * With the nonsymmetric cycle as preconditioner M the direction is made A-conjugate by the Polak-Ribiere form
+ *
+ *     beta = z . (r - r_old) / (z_old . r_old),   and since r - r_old = -a A p_old,   = -a (z . A p_old) / (z_old . r_old),
+ *
+ * which needs no old residual (flexible CG: Golub and Ye 1999; Notay 2000).
+ */
+#include "solve/pcg.h"
+
+#include <math.h>
+
+#include "grid/sweep.h"
+#include "solve/multigrid.h"
+
+
+CF_CLONES static void add_row(const int n, const cf_real factor, const cf_real *from, cf_real *to) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) to[i] += factor * from[i];
+}
+
+CF_CLONES static void scale_add_row(const int n, const cf_real factor, const cf_real *from, cf_real *to) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) to[i] = from[i] + factor * to[i];
+}
+
+CF_CLONES static void shift_row(const int n, const cf_real amount, cf_real *x) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) x[i] += amount;
+}
+
+/* to += factor from. */
+static void add_scaled(const cf_level *l, const double factor, const cf_cell from, const cf_cell to) {
+  CF_PARALLEL_ROWS(&l->box, l->threads, r) {
+    const ptrdiff_t p = cf_box_row(&l->box, r);
+    add_row(l->box.n[0], (cf_real)factor, from.at + p, to.at + p);
+  }
+}
+
+/* to = from + factor to. */
+static void scale_and_add(const cf_level *l, const double factor, const cf_cell from, const cf_cell to) {
+  CF_PARALLEL_ROWS(&l->box, l->threads, r) {
+    const ptrdiff_t p = cf_box_row(&l->box, r);
+    scale_add_row(l->box.n[0], (cf_real)factor, from.at + p, to.at + p);
+  }
+}
+
+static void shift(const cf_level *l, const double amount, const cf_cell x) {
+  CF_PARALLEL_ROWS(&l->box, l->threads, r)
+  shift_row(l->box.n[0], (cf_real)amount, x.at + cf_box_row(&l->box, r));
+}
+
+static double volume(const cf_level *l) {
+  double v = 1;
+  for (int a = 0; a < l->box.dim; ++a) {
+    double length = 0;
+    for (int i = 0; i < l->axis[a].n; ++i) length += l->axis[a].width[i];
+    v *= length;
+  }
+  return v;
+}
+
+static double mean_of(const cf_level *l, const cf_cell x) { return cf_level_sum(l, x) / volume(l); }
+
+void cf_level_remove_mean(const cf_level *l, const cf_cell x) { shift(l, -mean_of(l, x), x); }
+
+int cf_pcg_plain(cf_level *l, const bool singular, const cf_cell b, const cf_solve_options *o,
+                 const cf_cell work[3], const cf_cell x) {
+  const cf_cell r = work[0], p = work[1], Ap = work[2];
+  cf_level_clear(l, x);
+  cf_level_clear(l, r);
+  cf_level_clear(l, p);
+  add_scaled(l, 1, b, r);
+  if (singular) cf_level_remove_mean(l, r);
+  double rr = cf_level_dot(l, r, r);
+  const double enough = o->tolerance * o->tolerance * rr;
+  int it = 0;
+  double beta = 0;
+  while (rr > enough && it < o->max_iterations) {
+    scale_and_add(l, beta, r, p);
+    cf_level_apply(l, p, Ap);
+    const double pAp = cf_level_dot(l, p, Ap);
+    if (!(pAp > 0)) break; /* only a null space is left */
+    const double a = rr / pAp;
+    add_scaled(l, a, p, x);
+    add_scaled(l, -a, Ap, r);
+    const double next = cf_level_dot(l, r, r);
+    beta = next / rr;
+    rr = next;
+    ++it;
+  }
+  if (singular) cf_level_remove_mean(l, x);
+  return it;
+}
+
+/* A caller's field may hold anything in its ghosts. */
+static void set_outside(const cf_helmholtz *A, const cf_cell x) {
+  cf_halo_fill(&A->grid.box, &A->outside, 1, -1, x.at);
+}
+
+void cf_helmholtz_apply(cf_helmholtz *A, const cf_cell x, const cf_cell y) {
+  set_outside(A, x);
+  cf_level_apply(&A->level[0], x, y);
+}
+
+double cf_helmholtz_residual(cf_helmholtz *A, const cf_cell x, const cf_cell b) {
+  cf_level *l = &A->level[0];
+  set_outside(A, x);
+  cf_level_residual(l, x, b, A->z);
+  const double bb = cf_level_dot(l, b, b);
+  return bb > 0 ? sqrt(cf_level_dot(l, A->z, A->z) / bb) : sqrt(cf_level_dot(l, A->z, A->z));
+}
+
+
+cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_options *o, const cf_cell x,
+                             cf_solve_report *report) {
+  cf_level *l = &A->level[0];
+  const cf_cell r = A->r, p = A->p, Ap = A->Ap, z = A->z;
+  *report = (cf_solve_report){.levels = A->depth};
+  set_outside(A, x);
+  if (A->singular) cf_level_remove_mean(l, b);
+  const double mean = A->singular ? mean_of(l, x) : 0;
+  cf_level_residual(l, x, b, r);
+  const double bb = cf_level_dot(l, b, b);
+  double rr = cf_level_dot(l, r, r);
+  if (!isfinite(bb) || !isfinite(rr))
+    return cf_fail(CF_NOT_FINITE, "the equation to solve holds a value that is not finite (|b| = %g, |b - A x| = %g)",
+                   sqrt(bb), sqrt(rr));
+  if (bb == 0) cf_level_clear(l, x);
+  const double enough = o->tolerance * o->tolerance * bb;
+  double zr_old = 0, a = 0;
+  while (bb > 0 && rr > enough && report->iterations < o->max_iterations) {
+    cf_multigrid_cycle(A, r, z);
+    if (A->singular) cf_level_remove_mean(l, z);
+    const double beta = report->iterations == 0 ? 0 : -a * cf_level_dot(l, z, Ap) / zr_old;
+    const double zr = cf_level_dot(l, z, r);
+    scale_and_add(l, beta, z, p);
+    cf_level_apply(l, p, Ap);
+    const double pAp = cf_level_dot(l, p, Ap), pr = cf_level_dot(l, p, r);
+    if (!(pAp > 0)) break; /* round-off is all that is left */
+    a = pr / pAp;
+    add_scaled(l, a, p, x);
+    add_scaled(l, -a, Ap, r);
+    zr_old = zr;
+    rr = cf_level_dot(l, r, r);
+    ++report->iterations;
+  }
+  report->residual = bb > 0 ? sqrt(rr / bb) : 0;
+  report->converged = bb == 0 || rr <= enough;
+  if (A->singular) shift(l, mean - mean_of(l, x), x);
+  return CF_OK;
+}
