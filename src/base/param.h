@@ -56,7 +56,8 @@ typedef int cf_param_word;       /* index among the words of the row */
 typedef unsigned cf_param_words; /* a set of words: bit i is word i */
 typedef const char *cf_param_text;
 typedef const char *cf_param_key; /* not a key of the scene: the name of a record in its map */
-typedef cf_function cf_param_function;
+typedef cf_function cf_param_function; /* of x, y, z and t */
+typedef cf_function cf_param_profile;  /* of x, y and z */
 typedef cf_interval cf_param_interval;
 typedef struct cf_param_texts {
   int count;
@@ -75,6 +76,7 @@ typedef struct cf_param_functions {
   int count; /* 1, or one an axis */
   cf_function axis[3];
 } cf_param_functions;
+typedef cf_param_functions cf_param_profiles;
 typedef struct cf_param_walls {
   cf_walls walls;
   const char *text[3][2]; /* the expression of a value; NULL where there is none */
@@ -87,15 +89,20 @@ typedef struct cf_param_constants { /* names for numbers, in the order given */
   double *value;
 } cf_param_constants;
 
-#define CF_PARAM_TYPE_LIST(T)                                                                             \
-  T(number, "number")                                                                                     \
-  T(number_or_auto, "number or auto") T(integer, "whole number") T(flag, "true or false") T(word, "word") \
-      T(words, "list of words") T(text, "text") T(key, "name") T(texts, "list of texts")                  \
-          T(numbers, "list of numbers") T(numbers_or_auto, "list of numbers, or auto")                    \
-              T(integers, "list of whole numbers") T(function, "number or expression")                    \
-                  T(functions, "expression, or one an axis") T(walls, "walls") T(interval, "interval")    \
-                      T(constants, "map of names to numbers") T(record, "map") T(optional, "map")         \
-                          T(list, "list of maps") T(map, "map of names to maps")
+/* clang-format off */
+#define CF_PARAM_TYPE_LIST(T)                                                           \
+  T(number, "number") T(number_or_auto, "number or auto") T(integer, "whole number")    \
+  T(flag, "true or false") T(word, "word") T(words, "list of words") T(text, "text")    \
+  T(key, "name") T(texts, "list of texts") T(numbers, "list of numbers")                \
+  T(numbers_or_auto, "list of numbers, or auto") T(integers, "list of whole numbers")   \
+  T(function, "number or expression in x, y, z, t")                                     \
+  T(profile, "number or expression in x, y, z")                                         \
+  T(functions, "number or expression in x, y, z, t; for a vector a list, one an axis")  \
+  T(profiles, "number or expression in x, y, z; for a vector a list, one an axis")      \
+  T(walls, "word, or map of sides") T(interval, "N steps, a time, or never")            \
+  T(constants, "map of names to numbers") T(record, "map") T(optional, "map")           \
+  T(list, "list of maps") T(map, "map of names to maps")
+/* clang-format on */
 
 typedef enum cf_param_type {
 #define CF_PARAM_TYPE_ENUM(type, what) CF_PARAM_##type,

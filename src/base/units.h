@@ -15,7 +15,8 @@ typedef struct cf_unit_change {
   double scale, offset;
 } cf_unit_change;
 
-/* How numbers in the unit `given` become numbers in the unit `wanted` ("" is a plain number).
+/* How numbers in the unit `given` become numbers in the unit `wanted` ("" is a plain number,
+ * NULL the unit of the SI that fits).
  * CF_BAD_ARGUMENT with a sentence made to follow the name of a key: "has unit m/s, expected m^2/s" or
  * "has unit cmm: there is no such unit". */
 cf_status cf_units_change(const char *given, const char *wanted, cf_unit_change *change);

@@ -3,8 +3,9 @@
  * Scene files, whatever is in them: YAML into the structs of a root table (base/param.h), and back.
  *
  * A scene is read in three passes. The text becomes a tree of maps, lists and scalars, each with its place
- * (scene_tree.c). Overrides (KEY=VALUE from a command line) replace parts of the tree. The tree is matched
- * against the tables and fills the structs (scene_read.c), with the defaults for what is left out.
+ * (scene_yaml.c). Overrides (KEY=VALUE from a command line) replace parts of the tree (scene_tree.c). The
+ * tree is matched against the tables and fills the structs (scene_read.c), with the defaults for what is left
+ * out.
  *
  * All scalars are text until a row says what they are: no yes/no or 1e-3 traps. An error names the place,
  * shows the line and suggests:
@@ -38,11 +39,15 @@ typedef struct cf_overrides {
   const char *const *set;
 } cf_overrides;
 
-/* Reads the file at `path` into `record`, a zeroed struct of the table `root`. The root table must have a
- * member `let` of type constants if scenes may name constants. CF_BAD_SCENE for everything that is wrong with
- * the file, a file that is not there included. On failure nothing is left behind. */
-cf_status cf_config_read(cf_config **config, const cf_param_table *root, void *record, const char *path,
+/* Reads the file at `path`, and the overrides, into a tree; nothing is matched yet. CF_BAD_SCENE for a file
+ * that is not there, is not text, is not YAML, or is not a map. On failure nothing is left behind. */
+cf_status cf_config_open(cf_config **config, const cf_param_table *root, const char *path,
                          const cf_overrides *overrides);
+
+/* Matches the tree against the root table and fills `record`, a zeroed struct of that table. A root row `let`
+ * of type constants is read first and names the constants for all other keys. CF_BAD_SCENE for what does not
+ * match. */
+cf_status cf_config_read(cf_config *config, void *record);
 
 /* Frees the tree and everything the structs point to; NULL is fine. */
 void cf_config_destroy(cf_config *config);
@@ -56,10 +61,12 @@ const char *cf_config_folder(
 cf_status cf_config_fail_at(const cf_config *config, const char *key, const char *format, ...)
     CF_PRINTF(3, 4);
 
-/* Whether the file or an override has `key`. */
+/* Whether the file or an override has `key`; and the text written for it, NULL if it is no single value. */
 bool cf_config_has(const cf_config *config, const char *key);
+const char *cf_config_scalar(const cf_config *config, const char *key);
 
-/* Fills a record with the defaults of its table, as if it stood empty in the file. */
+/* Fills a record with the defaults of its table, as if it stood empty in the file (rows that are required
+ * stay zero). */
 cf_status cf_config_fill(cf_config *config, const cf_param_table *table, void *record);
 
 /* Zeroed memory, and text, that live as long as the configuration. */

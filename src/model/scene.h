@@ -102,13 +102,13 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
     "Output frames per unit of time; 0: only the first and the last state")
 
 #define CF_DIFFUSION_TABLE(P, R)                                                                           \
-  P(k, function, "0", "m^2/s", "[0, inf)", "Diffusivity k of eqs 7 to 10; an expression in x, y, z")       \
+  P(k, profile, "0", "m^2/s", "[0, inf)", "Diffusivity k of eqs 7 to 10; an expression in x, y, z")        \
   P(tau, number, "0", "s", "[0, inf)", "Relaxation time tau of the flux, eqs 7 to 10; 0 is Fourier's law") \
   P(f_t, number, "0", "", "[0, 1]",                                                                        \
     "The fraction F_T of Fourier's law in the flux: 0 is Cattaneo's law, 1 Fourier's")                     \
   P(front_speed, number, CF_NONE, "m/s", "(0, inf)",                                                       \
     "Speed c of the front, in place of k or of tau: c^2 = (1 - f_t) k/tau")                                \
-  P(capacity, function, "1", "", "(0, inf)",                                                               \
+  P(capacity, profile, "1", "", "(0, inf)",                                                                \
     "Capacity C of eq. 1, what one unit of the scalar needs; an expression in x, y, z")                    \
   P(scheme, word, "default", "", CF_WORDS(CF_SCHEME_WORDS),                                                \
     "default: the stable choice for tau and f_t; paper: eqs 11 to 18 as printed; sdirk2: two stages, "     \
@@ -127,7 +127,7 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
 
 #define CF_FIELD_TABLE(P, R)                                                                     \
   P(name, key, CF_NONE, "", "", "The name of the field")                                         \
-  P(initial, functions, "0", "", "",                                                             \
+  P(initial, profiles, "0", "", "",                                                              \
     "Values at time 0, an expression in x, y, z; for a flux (q, q_NAME) one expression an axis") \
   R(optional, diffusion, cf_scene_diffusion,                                                     \
     "Diffusion of this scalar, where it differs from the common one")                            \

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The tables of the scene as constants, and reading, writing and explaining with them. What a scene must
+ * fulfil beyond the tables is in scene_check.c and scene_fields.c.
+ */
+#include "model/scene.h"
+
+#include <stdarg.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "io/scene.h"
+#include "model/scene_check.h"
+
+#define CF_PARAM_STRUCT cf_scene_domain
+CF_PARAM_TABLE(cf_scene_domain, CF_DOMAIN_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_time
+CF_PARAM_TABLE(cf_scene_time, CF_TIME_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_diffusion
+CF_PARAM_TABLE(cf_scene_diffusion, CF_DIFFUSION_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_advection
+CF_PARAM_TABLE(cf_scene_advection, CF_ADVECTION_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_field
+CF_PARAM_TABLE(cf_scene_field, CF_FIELD_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_source
+CF_PARAM_TABLE(cf_scene_source, CF_SOURCE_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_solver
+CF_PARAM_TABLE(cf_scene_solver, CF_SOLVER_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_checkpoint
+CF_PARAM_TABLE(cf_scene_checkpoint, CF_CHECKPOINT_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_preview
+CF_PARAM_TABLE(cf_scene_preview, CF_PREVIEW_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_output
+CF_PARAM_TABLE(cf_scene_output, CF_OUTPUT_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene
+CF_PARAM_TABLE(cf_scene, CF_SCENE_TABLE)
+#undef CF_PARAM_STRUCT
+
+/* Before anything else is looked at: a later format may have other keys. */
+static cf_status check_version(const cf_config *config) {
+  const char *version = cf_config_scalar(config, "cattaneo");
+  if (!cf_config_has(config, "cattaneo"))
+    return cf_config_fail_at(config, "cattaneo", "cattaneo is missing: a scene starts with `cattaneo: 1`");
+  if (version == NULL || strcmp(version, "1") != 0)
+    return cf_config_fail_at(config, "cattaneo",
+                             "cattaneo: %.40s is not a version this program knows: it reads 1",
+                             version != NULL ? version : "this");
+  return CF_OK;
+}
+
+static cf_status read_into(cf_scene *scene, const char *path, const cf_overrides *overrides) {
+  CF_TRY(cf_config_open(&scene->config, &cf_scene_table, path, overrides));
+  CF_TRY(check_version(scene->config));
+  CF_TRY(cf_config_read(scene->config, scene));
+  return cf_scene_resolve(scene);
+}
+
+cf_status cf_scene_read(cf_scene **scene, const char *path, const int overrides, const char *const *set) {
+  const cf_overrides given = {overrides, set};
+  *scene = NULL;
+  cf_scene *fresh;
+  CF_TRY(CF_NEW(&fresh, 1));
+  const cf_status status = read_into(fresh, path, &given);
+  if (status != CF_OK) {
+    cf_scene_destroy(fresh);
+    return status;
+  }
+  *scene = fresh;
+  return CF_OK;
+}
+
+void cf_scene_destroy(cf_scene *scene) {
+  if (scene == NULL) return;
+  cf_config_destroy(scene->config);
+  cf_free(scene);
+}
+
+const char *cf_scene_path(const cf_scene *scene) { return cf_config_path(scene->config); }
+const char *cf_scene_folder(const cf_scene *scene) { return cf_config_folder(scene->config); }
+bool cf_scene_has(const cf_scene *scene, const char *key) { return cf_config_has(scene->config, key); }
+
+cf_status cf_scene_fail_at(const cf_scene *scene, const char *key, const char *format, ...) {
+  char sentence[CF_SENTENCE_MAX];
+  va_list values;
+  va_start(values, format);
+  vsnprintf(sentence, sizeof sentence, format, values);
+  va_end(values);
+  return cf_config_fail_at(scene->config, key, "%s", sentence);
+}
+
+cf_status cf_scene_write(const cf_scene *scene, char **text) {
+  return cf_config_write(&cf_scene_table, scene, text);
+}
+
+cf_status cf_scene_explain(const char *key, char **text) {
+  return cf_config_explain(&cf_scene_table, key, text);
+}
+
+/* --- names --------------------------------------------------------------------------------------------- */
+
+bool cf_scene_name_is_flux(const char *name) { return strcmp(name, "q") == 0 || strncmp(name, "q_", 2) == 0; }
+
+int cf_scene_field_index(const cf_scene *scene, const char *name) {
+  for (int i = 0; i < scene->fields.count; ++i)
+    if (strcmp(scene->fields.item[i].name, name) == 0) return i;
+  return -1;
+}
+
+int cf_scene_flux_scalar(const cf_scene *scene, const char *name) {
+  int scalars = 0, last = -1;
+  if (!cf_scene_name_is_flux(name)) return -1;
+  if (name[1] == '_') {
+    const int index = cf_scene_name_is_flux(name + 2) ? -1 : cf_scene_field_index(scene, name + 2);
+    return index;
+  }
+  for (int i = 0; i < scene->fields.count; ++i) {
+    if (cf_scene_name_is_flux(scene->fields.item[i].name)) continue;
+    ++scalars;
+    last = i;
+  }
+  return scalars == 1 ? last : cf_scene_field_index(scene, "phi");
+}

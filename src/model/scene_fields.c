@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The fields of a scene made complete: names, initial values, and for every scalar its own diffusion and
+ * walls, with what it leaves out taken from the common ones.
+ *
+ * The speed of the front, c^2 = (1 - f_t) k/tau, may stand in place of k or of tau:
+ *
+ *     k and c:    tau = (1 - f_t) k/c^2
+ *     tau and c:  k = c^2 tau/(1 - f_t)
+ *
+ * Afterwards front_speed is not given (NaN), so a resolved scene does not say the same thing twice.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/scene.h"
+#include "model/scene_check.h"
+
+enum { KEY_MAX = 160 };
+
+/* --- diffusion ---------------------------------------------------------------------------------------------
+ */
+
+static cf_status fail_speed(const cf_scene *scene, const char *path, const char *sentence) {
+  char key[KEY_MAX];
+  snprintf(key, sizeof key, "%s.front_speed", path);
+  return cf_scene_fail_at(scene, key, "%s %s", key, sentence);
+}
+
+/* Turns front_speed into whichever of k and tau stands beside it. */
+static cf_status resolve_speed(cf_scene *scene, const char *path, cf_scene_diffusion *d) {
+  if (!d->given.front_speed) return CF_OK;
+  const double speed = d->front_speed, part = 1.0 - d->f_t;
+  if (d->given.k && d->given.tau)
+    return fail_speed(scene, path, "does not go with both k and tau: any two of the three give the third");
+  if (!d->given.k && !d->given.tau) return fail_speed(scene, path, "needs k or tau beside it");
+  if (part <= 0.0) return fail_speed(scene, path, "does not go with f_t = 1: Fourier's law has no front");
+  if (d->given.k && !cf_fn_is_constant(&d->k.fn))
+    return fail_speed(scene, path, "needs a k that is one number");
+  if (d->given.tau && d->tau <= 0.0) return fail_speed(scene, path, "needs tau > 0");
+  if (d->given.k) d->tau = part * d->k.fn.value / (speed * speed);
+  if (d->given.tau) {
+    d->k.fn = cf_fn_constant(speed * speed * d->tau / part);
+    CF_TRY(cf_config_text(scene->config, &d->k.text, "%.17g", d->k.fn.value));
+  }
+  if (!isfinite(d->tau) || !isfinite(d->k.fn.value))
+    return fail_speed(scene, path, "gives a k or tau that is not finite");
+  d->front_speed = (double)NAN;
+  d->given.front_speed = false;
+  d->given.k = d->given.tau = true;
+  return CF_OK;
+}
+
+static cf_status resolve_own_diffusion(cf_scene *scene, cf_scene_field *field) {
+  char path[KEY_MAX];
+  cf_scene_diffusion *d = &field->diffusion;
+  const cf_scene_diffusion *common = &scene->diffusion;
+  snprintf(path, sizeof path, "fields.%s.diffusion", field->name);
+  if (!d->given.f_t) d->f_t = common->f_t;
+  CF_TRY(resolve_speed(scene, path, d));
+#define CF_INHERIT(name, type, fallback, unit, range, doc) \
+  if (!d->given.name) d->name = common->name;
+  CF_DIFFUSION_TABLE(CF_INHERIT, )
+#undef CF_INHERIT
+  field->given.diffusion = true;
+  return CF_OK;
+}
+
+/* --- walls
+ * -------------------------------------------------------------------------------------------------- */
+
+static const char *side_name(const int axis, const int high) {
+  static const char *const names[3][2] = {{"x-", "x+"}, {"y-", "y+"}, {"z-", "z+"}};
+  return names[axis][high];
+}
+
+/* Sides that were not named are as in `common`; those of a third axis that is not there are insulated. */
+static void inherit_walls(const cf_scene *scene, cf_param_walls *walls, const cf_param_walls *common) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (int high = 0; high < 2; ++high) {
+      const bool there = axis < scene->dim;
+      if (there && walls->given[axis][high]) continue;
+      const bool inherit = there && common != NULL;
+      walls->walls.kind[axis][high] = inherit ? common->walls.kind[axis][high] : CF_WALL_INSULATED;
+      walls->walls.value[axis][high] = inherit ? common->walls.value[axis][high] : cf_fn_constant(0.0);
+      walls->text[axis][high] = inherit ? common->text[axis][high] : NULL;
+      walls->given[axis][high] = there;
+    }
+}
+
+static cf_status check_walls(const cf_scene *scene, const char *path, const cf_param_walls *walls) {
+  char key[KEY_MAX];
+  for (int axis = 0; axis < scene->dim; ++axis)
+    for (int high = 0; high < 2; ++high) {
+      const char *side = side_name(axis, high), *other = side_name(axis, 1 - high);
+      const bool here = walls->walls.kind[axis][high] == CF_WALL_PERIODIC;
+      snprintf(key, sizeof key, "%s.%s", path, side);
+      if (here && walls->walls.kind[axis][1 - high] != CF_WALL_PERIODIC)
+        return cf_scene_fail_at(scene, key, "%s is periodic and %s is not: both are or none", key, other);
+      if (here != (scene->domain.walls.walls.kind[axis][high] == CF_WALL_PERIODIC))
+        return cf_scene_fail_at(scene, key, "%s: an axis is periodic for all fields or for none", key);
+    }
+  for (int high = 0; high < 2; ++high) {
+    snprintf(key, sizeof key, "%s.%s", path, side_name(2, high));
+    if (scene->dim == 2 && cf_scene_has(scene, key))
+      return cf_scene_fail_at(scene, key, "%s: the scene has two axes, x and y", key);
+  }
+  return CF_OK;
+}
+
+/* --- fields
+ * -------------------------------------------------------------------------------------------------- */
+
+/* One scalar, phi, where a scene names no fields. */
+static cf_status default_field(cf_scene *scene) {
+  void *block;
+  CF_TRY(cf_config_new(scene->config, &block, sizeof(cf_scene_field)));
+  scene->fields.item = block;
+  scene->fields.count = 1;
+  scene->fields.item[0].name = "phi";
+  return cf_config_fill(scene->config, &cf_scene_field_table, &scene->fields.item[0]);
+}
+
+static cf_status resolve_flux(cf_scene *scene, cf_scene_field *field) {
+  char key[KEY_MAX];
+  snprintf(key, sizeof key, "fields.%s", field->name);
+  if (cf_scene_flux_scalar(scene, field->name) < 0)
+    return cf_scene_fail_at(scene, key, "%s is the flux of a scalar that `fields` does not have",
+                            field->name);
+  snprintf(key, sizeof key, "fields.%s.diffusion", field->name);
+  if (field->given.diffusion)
+    return cf_scene_fail_at(scene, key, "%s: a flux has no diffusion of its own", key);
+  snprintf(key, sizeof key, "fields.%s.walls", field->name);
+  if (field->given.walls) return cf_scene_fail_at(scene, key, "%s: a flux has the walls of its scalar", key);
+  snprintf(key, sizeof key, "fields.%s.initial", field->name);
+  return cf_scene_check_axes(scene, &field->initial, field->given.initial, scene->dim, key);
+}
+
+static cf_status resolve_scalar(cf_scene *scene, cf_scene_field *field) {
+  char key[KEY_MAX];
+  snprintf(key, sizeof key, "fields.%s.initial", field->name);
+  CF_TRY(cf_scene_check_axes(scene, &field->initial, field->given.initial, 1, key));
+  CF_TRY(resolve_own_diffusion(scene, field));
+  inherit_walls(scene, &field->walls, &scene->domain.walls);
+  field->given.walls = true;
+  snprintf(key, sizeof key, "fields.%s.walls", field->name);
+  return check_walls(scene, key, &field->walls);
+}
+
+/* q and q_NAME of the only scalar are two names for one thing. */
+static cf_status check_two_names(const cf_scene *scene) {
+  const int q = cf_scene_field_index(scene, "q");
+  const int scalar = q >= 0 ? cf_scene_flux_scalar(scene, "q") : -1;
+  for (int i = 0; i < scene->fields.count; ++i) {
+    const char *name = scene->fields.item[i].name;
+    char key[KEY_MAX];
+    if (i == q || scalar < 0 || cf_scene_flux_scalar(scene, name) != scalar) continue;
+    snprintf(key, sizeof key, "fields.%s", name);
+    return cf_scene_fail_at(scene, key, "%s and q are both the flux of %s", name,
+                            scene->fields.item[scalar].name);
+  }
+  return CF_OK;
+}
+
+cf_status cf_scene_resolve_fields(cf_scene *scene) {
+  inherit_walls(scene, &scene->domain.walls, NULL);
+  CF_TRY(check_walls(scene, "domain.walls", &scene->domain.walls));
+  CF_TRY(resolve_speed(scene, "diffusion", &scene->diffusion));
+  if (scene->fields.count == 0) CF_TRY(default_field(scene));
+  for (int i = 0; i < scene->fields.count; ++i) {
+    cf_scene_field *field = &scene->fields.item[i];
+    const bool flux = cf_scene_name_is_flux(field->name);
+    CF_TRY(flux ? resolve_flux(scene, field) : resolve_scalar(scene, field));
+  }
+  return check_two_names(scene);
+}
