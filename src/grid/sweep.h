@@ -62,12 +62,17 @@
       name##_in_2d(n, x1, x2);                                                                   \
   }
 
-/* The same for a row that returns its partial sum. */
-#define CF_CLONED_SUM(name, T1, T2)                                                              \
-  CF_CLONES static double name##_in_2d(const int n, T1 x1, T2 x2) { return name(2, n, x1, x2); } \
-  CF_CLONES static double name##_in_3d(const int n, T1 x1, T2 x2) { return name(3, n, x1, x2); } \
-  static inline double name##_by_dim(const int dim, const int n, T1 x1, T2 x2) {                 \
-    return dim == 3 ? name##_in_3d(n, x1, x2) : name##_in_2d(n, x1, x2);                         \
+/* The same for a row with a second literal, `form` 0 or 1 (constant or varying coefficients), after dim. */
+#define CF_CLONED_FORMS(name, T1, T2)                                                                  \
+  CF_KERNEL void name##_form_0(const int dim, const int n, T1 x1, T2 x2) { name(dim, 0, n, x1, x2); }  \
+  CF_KERNEL void name##_form_1(const int dim, const int n, T1 x1, T2 x2) { name(dim, 1, n, x1, x2); }  \
+  CF_CLONED(name##_form_0, T1, T2)                                                                     \
+  CF_CLONED(name##_form_1, T1, T2)                                                                     \
+  static inline void name##_by_form(const int dim, const int form, const int n, T1 x1, T2 x2) {        \
+    if (form)                                                                                          \
+      name##_form_1_by_dim(dim, n, x1, x2);                                                            \
+    else                                                                                               \
+      name##_form_0_by_dim(dim, n, x1, x2);                                                            \
   }
 
 /* Below this many cells a second thread costs more than it brings. */

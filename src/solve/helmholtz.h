@@ -26,6 +26,7 @@
 #include "base/walls.h"
 #include "grid/field.h"
 #include "grid/grid.h"
+#include "grid/wall.h"
 
 typedef struct cf_helmholtz cf_helmholtz;
 
@@ -52,7 +53,8 @@ typedef struct cf_solve_report {
 cf_status cf_helmholtz_create(cf_helmholtz **A, const cf_grid *g, const cf_walls *walls, int levels);
 void cf_helmholtz_destroy(cf_helmholtz *A); /* NULL is fine */
 
-/* Coefficients may change from step to step. Fields cost the hierarchy their own memory, taken when first
+/* Coefficients may change from step to step. beta's faces on the high side of a periodic axis are set to those
+ * on its low side. Fields cost the hierarchy their own memory, taken when first
  * seen: CF_NO_MEMORY. CF_BAD_ARGUMENT: negative or not finite numbers. */
 cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c);
 
@@ -62,8 +64,8 @@ void cf_helmholtz_apply(cf_helmholtz *A, cf_cell x, cf_cell y);
 /* |b - A x| / |b|, computed afresh. */
 double cf_helmholtz_residual(cf_helmholtz *A, cf_cell x, cf_cell b);
 
-/* b += what the values of held walls at time t contribute, beta phi_wall 2/h^2. CF_NO_MEMORY. */
-cf_status cf_helmholtz_add_walls(const cf_helmholtz *A, const cf_walls *walls, double t, cf_cell b);
+/* b += what the values of held walls contribute, beta phi_wall 2/h^2. */
+void cf_helmholtz_add_walls(const cf_helmholtz *A, const cf_wall_values *walls, cf_cell b);
 
 /* x comes as the initial guess. Not converging is a report, not a failure. b is overwritten where the system is
  * singular (made to sum to 0), otherwise kept. CF_NOT_FINITE: b or x holds a value that is not finite. */

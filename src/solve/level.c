@@ -101,27 +101,9 @@ CF_KERNEL void smooth_row(const int dim, const int variable, const int n, const 
   }
 }
 
-/* Each kernel in its two forms, constant and variable coefficients. */
-#define CF_TWO_FORMS(name)                                                                          \
-  CF_KERNEL void name##_constant(const int dim, const int n, const row *w, const ptrdiff_t r) {      \
-    name(dim, 0, n, w, r);                                                                           \
-  }                                                                                                  \
-  CF_KERNEL void name##_variable(const int dim, const int n, const row *w, const ptrdiff_t r) {      \
-    name(dim, 1, n, w, r);                                                                           \
-  }                                                                                                  \
-  CF_CLONED(name##_constant, const row *, const ptrdiff_t)                                           \
-  CF_CLONED(name##_variable, const row *, const ptrdiff_t)                                           \
-  static void name##_everywhere(const row *w) {                                                      \
-    const cf_box *box = &w->level->box;                                                              \
-    if (w->level->variable) {                                                                        \
-      CF_PARALLEL_ROWS(box, w->level->threads, r) name##_variable_by_dim(box->dim, box->n[0], w, r); \
-    } else {                                                                                         \
-      CF_PARALLEL_ROWS(box, w->level->threads, r) name##_constant_by_dim(box->dim, box->n[0], w, r); \
-    }                                                                                                \
-  }
-CF_TWO_FORMS(apply_row)
-CF_TWO_FORMS(residual_row)
-CF_TWO_FORMS(smooth_row)
+CF_CLONED_FORMS(apply_row, const row *, const ptrdiff_t)
+CF_CLONED_FORMS(residual_row, const row *, const ptrdiff_t)
+CF_CLONED_FORMS(smooth_row, const row *, const ptrdiff_t)
 
 static void fill_seams(const cf_level *l, const cf_cell x) {
   if (l->has_seam) cf_halo_fill(&l->box, &l->wrap, 1, -1, x.at);
@@ -129,18 +111,21 @@ static void fill_seams(const cf_level *l, const cf_cell x) {
 
 void cf_level_apply(const cf_level *l, const cf_cell x, const cf_cell y) {
   fill_seams(l, x);
-  apply_row_everywhere(&(row){.level = l, .x = x.at, .out = y.at});
+  const row w = {.level = l, .x = x.at, .out = y.at};
+  CF_PARALLEL_ROWS(&l->box, l->threads, at) apply_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
 }
 
 void cf_level_residual(const cf_level *l, const cf_cell x, const cf_cell b, const cf_cell r) {
   fill_seams(l, x);
-  residual_row_everywhere(&(row){.level = l, .x = x.at, .b = b.at, .out = r.at});
+  const row w = {.level = l, .x = x.at, .b = b.at, .out = r.at};
+  CF_PARALLEL_ROWS(&l->box, l->threads, at) residual_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
 }
 
 void cf_level_smooth(const cf_level *l, const cf_cell b, const cf_real omega, const cf_cell x) {
   for (int colour = 0; colour < 2; ++colour) {
     fill_seams(l, x);
-    smooth_row_everywhere(&(row){.level = l, .b = b.at, .out = x.at, .omega = omega, .colour = colour});
+    const row w = {.level = l, .b = b.at, .out = x.at, .omega = omega, .colour = colour};
+    CF_PARALLEL_ROWS(&l->box, l->threads, at) smooth_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
   }
 }
 

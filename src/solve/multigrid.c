@@ -180,6 +180,7 @@ static cf_status set_finest_fields(cf_helmholtz *A, const cf_coefficients *c) {
     if (A->owns_beta) cf_face_destroy(&l->beta, box);
     A->owns_beta = false;
     l->beta = *c->beta_at;
+    for (int a = 0; a < box->dim; ++a) cf_halo_fill(box, &l->wrap, 0, a, l->beta.at[a]);
   } else {
     if (!A->owns_beta) CF_TRY(cf_face_create(&l->beta, box));
     A->owns_beta = true;

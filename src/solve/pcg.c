@@ -150,3 +150,19 @@ cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_op
   if (A->singular) shift(l, mean - mean_of(l, x), x);
   return CF_OK;
 }
+
+void cf_helmholtz_add_walls(const cf_helmholtz *A, const cf_wall_values *v, const cf_cell b) {
+  const cf_level *l = &A->level[0];
+  for (int a = 0; a < l->box.dim; ++a)
+    for (int side = 0; side < 2; ++side) {
+      if (v->at[a][side] == NULL) continue;
+      const cf_wall_side w = cf_wall_side_of(&l->box, a, side);
+      const double table = (double)(side == 0 ? l->axis[a].lo[0] : l->axis[a].hi[l->axis[a].n - 1]);
+      for (int i_c = 0; i_c < w.n_c; ++i_c)
+        for (int i_b = 0; i_b < w.n_b; ++i_b) {
+          const ptrdiff_t p = cf_wall_cell(&l->box, &w, i_b, i_c);
+          const double beta = l->variable ? (double)l->beta.at[a][side == 0 ? p : p + w.outward] : 1;
+          b.at[p] += (cf_real)(table * beta * v->at[a][side][i_b + (ptrdiff_t)w.n_b * i_c]);
+        }
+    }
+}
