@@ -76,6 +76,9 @@ cf_status cf_folder_log(cf_folder *f, const char *format, ...) CF_PRINTF(2, 3);
 typedef enum cf_file_kind { CF_FILE_OTHER, CF_FILE_RUN, CF_FILE_FRAME, CF_FILE_CHECKPOINT } cf_file_kind;
 cf_file_kind cf_file_kind_of(const char *name, int64_t *number);
 
+/* Calls `visit` for every name in a folder, in no order. CF_BAD_FILE: it cannot be listed. */
+cf_status cf_folder_each(const char *path, void (*visit)(void *context, const char *name), void *context);
+
 /* The numbers, ascending, of the files WORD_<number>.EXT in a folder. The list is the caller's: cf_free. A
  * folder that is not there has none. */
 cf_status cf_folder_numbers(const char *path, const char *word, const char *ext, int *count,
