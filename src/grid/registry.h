@@ -16,7 +16,13 @@
 
 #define CF_NAME_MAX 64
 
-typedef enum cf_kind { CF_KIND_CELL, CF_KIND_FACE, CF_KIND_PARTICLE, CF_KIND_NUMBER, CF_KIND_COUNTER } cf_kind;
+typedef enum cf_kind {
+  CF_KIND_CELL,
+  CF_KIND_FACE,
+  CF_KIND_PARTICLE,
+  CF_KIND_NUMBER,
+  CF_KIND_COUNTER
+} cf_kind;
 
 typedef struct cf_entry {
   char name[CF_NAME_MAX];
@@ -44,7 +50,8 @@ void cf_registry_clear(cf_registry *r); /* frees the list, not the state */
 cf_status cf_registry_add_cell(cf_registry *r, const char *name, const char *unit, cf_cell f);
 cf_status cf_registry_add_face(cf_registry *r, const char *name, const char *unit, cf_face f);
 cf_status cf_registry_add_particles(cf_registry *r, const cf_entry *particles);
-cf_status cf_registry_add_numbers(cf_registry *r, const char *name, const char *unit, double *number, int count);
+cf_status cf_registry_add_numbers(cf_registry *r, const char *name, const char *unit, double *number,
+                                  int count);
 cf_status cf_registry_add_counter(cf_registry *r, const char *name, int64_t *counter);
 
 /* NULL where there is none of that name. */

@@ -24,7 +24,7 @@ CF_CLONES static double sum_row(const int n, const cf_real *f) {
 
 cf_range cf_sweep_range(const cf_box *b, const int threads, const cf_real *f, double *rows) {
   const ptrdiff_t count = cf_box_rows(b);
-  CF_PARALLEL_ROWS(b, threads, r) {
+  CF_PARALLEL_ROWS (b, threads, r) {
     const cf_real *row = f + cf_box_row(b, r);
     cf_real least = row[0], largest = row[0];
     for (int i = 0; i < b->n[0]; ++i) {

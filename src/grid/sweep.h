@@ -52,27 +52,27 @@
 
 #define CF_KERNEL static inline __attribute__((always_inline))
 
-#define CF_CLONED(name, T1, T2)                                                                  \
-  CF_CLONES static void name##_in_2d(const int n, T1 x1, T2 x2) { name(2, n, x1, x2); }          \
-  CF_CLONES static void name##_in_3d(const int n, T1 x1, T2 x2) { name(3, n, x1, x2); }          \
-  static inline void name##_by_dim(const int dim, const int n, T1 x1, T2 x2) {                   \
-    if (dim == 3)                                                                                \
-      name##_in_3d(n, x1, x2);                                                                   \
-    else                                                                                         \
-      name##_in_2d(n, x1, x2);                                                                   \
+#define CF_CLONED(name, T1, T2)                                                         \
+  CF_CLONES static void name##_in_2d(const int n, T1 x1, T2 x2) { name(2, n, x1, x2); } \
+  CF_CLONES static void name##_in_3d(const int n, T1 x1, T2 x2) { name(3, n, x1, x2); } \
+  static inline void name##_by_dim(const int dim, const int n, T1 x1, T2 x2) {          \
+    if (dim == 3)                                                                       \
+      name##_in_3d(n, x1, x2);                                                          \
+    else                                                                                \
+      name##_in_2d(n, x1, x2);                                                          \
   }
 
 /* The same for a row with a second literal, `form` 0 or 1 (constant or varying coefficients), after dim. */
-#define CF_CLONED_FORMS(name, T1, T2)                                                                  \
-  CF_KERNEL void name##_form_0(const int dim, const int n, T1 x1, T2 x2) { name(dim, 0, n, x1, x2); }  \
-  CF_KERNEL void name##_form_1(const int dim, const int n, T1 x1, T2 x2) { name(dim, 1, n, x1, x2); }  \
-  CF_CLONED(name##_form_0, T1, T2)                                                                     \
-  CF_CLONED(name##_form_1, T1, T2)                                                                     \
-  static inline void name##_by_form(const int dim, const int form, const int n, T1 x1, T2 x2) {        \
-    if (form)                                                                                          \
-      name##_form_1_by_dim(dim, n, x1, x2);                                                            \
-    else                                                                                               \
-      name##_form_0_by_dim(dim, n, x1, x2);                                                            \
+#define CF_CLONED_FORMS(name, T1, T2)                                                                 \
+  CF_KERNEL void name##_form_0(const int dim, const int n, T1 x1, T2 x2) { name(dim, 0, n, x1, x2); } \
+  CF_KERNEL void name##_form_1(const int dim, const int n, T1 x1, T2 x2) { name(dim, 1, n, x1, x2); } \
+  CF_CLONED(name##_form_0, T1, T2)                                                                    \
+  CF_CLONED(name##_form_1, T1, T2)                                                                    \
+  static inline void name##_by_form(const int dim, const int form, const int n, T1 x1, T2 x2) {       \
+    if (form)                                                                                         \
+      name##_form_1_by_dim(dim, n, x1, x2);                                                           \
+    else                                                                                              \
+      name##_form_0_by_dim(dim, n, x1, x2);                                                           \
   }
 
 /* Below this many cells a second thread costs more than it brings. */
@@ -82,7 +82,7 @@ static inline int cf_sweep_threads(const cf_box *b, const int threads) {
   return cf_box_cells(b) < CF_SERIAL_CELLS ? 1 : threads;
 }
 
-#define CF_PARALLEL_ROWS(b, threads, r)                                              \
+#define CF_PARALLEL_ROWS(b, threads, r)                                                  \
   CF_PRAGMA(omp parallel for schedule(static) num_threads(cf_sweep_threads(b, threads))) \
   for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
 

@@ -6,7 +6,8 @@
 
 cf_wall_side cf_wall_side_of(const cf_box *box, const int axis, const int side) {
   const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
-  return (cf_wall_side){axis, side, b, c, box->n[b], box->n[c], side == 0 ? -box->stride[axis] : box->stride[axis]};
+  return (cf_wall_side){
+      axis, side, b, c, box->n[b], box->n[c], side == 0 ? -box->stride[axis] : box->stride[axis]};
 }
 
 cf_status cf_wall_values_create(cf_wall_values *v, const cf_grid *g, const cf_walls *walls) {

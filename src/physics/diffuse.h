@@ -35,11 +35,11 @@ typedef enum cf_diffuse_scheme { CF_DIFFUSE_PAPER, CF_DIFFUSE_SDIRK2 } cf_diffus
 
 /* What acts on the scalar; a NULL function does not act. Each writes every cell (face) of its fields at time t. */
 typedef struct cf_source {
-  cf_status (*rate)(const void *context, double t, cf_cell W);      /* d phi/dt */
-  cf_status (*flux_rate)(const void *context, double t, cf_face B); /* d q/dt */
+  cf_status (*rate)(void *context, double t, cf_cell W);      /* d phi/dt */
+  cf_status (*flux_rate)(void *context, double t, cf_face B); /* d q/dt */
   /* Cells held at `value` with weight `fraction` in [0, 1] (0: free, 1: held). */
-  cf_status (*hold)(const void *context, double t, cf_cell fraction, cf_cell value);
-  const void *context;
+  cf_status (*hold)(void *context, double t, cf_cell fraction, cf_cell value);
+  void *context;
 } cf_source;
 
 typedef struct cf_diffuse_params {
@@ -61,8 +61,8 @@ typedef struct cf_ledger {
 typedef struct cf_diffuse cf_diffuse;
 
 /* `g` must outlive the object. CF_BAD_ARGUMENT: a parameter out of range, or k < 0, C <= 0 somewhere. */
-cf_status cf_diffuse_create(cf_diffuse **d, const cf_grid *g, const cf_walls *walls, const cf_diffuse_params *p,
-                            const cf_source *source);
+cf_status cf_diffuse_create(cf_diffuse **d, const cf_grid *g, const cf_walls *walls,
+                            const cf_diffuse_params *p, const cf_source *source);
 void cf_diffuse_destroy(cf_diffuse *d); /* NULL is fine */
 
 /* phi and q from t to t + dt. The ghosts of both are scratch. report->iterations is summed over the solves,

@@ -31,7 +31,7 @@
 typedef struct cf_helmholtz cf_helmholtz;
 
 typedef struct cf_coefficients {
-  double alpha, beta;     /* used where the fields below are NULL; beta in m^2 (times alpha's unit) */
+  double alpha, beta;      /* used where the fields below are NULL; beta in m^2 (times alpha's unit) */
   const cf_cell *alpha_at; /* fields on the grid's box, owned by the caller, alive while solving */
   const cf_face *beta_at;
 } cf_coefficients;

@@ -44,8 +44,8 @@ CF_KERNEL cf_real coupling(const int variable, const couplings *c, const int a, 
 }
 
 /* (A x)_p as differences, which are exact where x is smooth; *diagonal is A's diagonal there. */
-CF_KERNEL cf_real apply_at(const int dim, const int variable, const couplings *c, const cf_real *x, const int i,
-                           const ptrdiff_t p, cf_real *diagonal) {
+CF_KERNEL cf_real apply_at(const int dim, const int variable, const couplings *c, const cf_real *x,
+                           const int i, const ptrdiff_t p, cf_real *diagonal) {
   const cf_real alpha = variable ? c->alpha_cell[p] : c->alpha;
   cf_real sum = 0, off = 0;
   CF_AXIS_LOOP
@@ -112,20 +112,22 @@ static void fill_seams(const cf_level *l, const cf_cell x) {
 void cf_level_apply(const cf_level *l, const cf_cell x, const cf_cell y) {
   fill_seams(l, x);
   const row w = {.level = l, .x = x.at, .out = y.at};
-  CF_PARALLEL_ROWS(&l->box, l->threads, at) apply_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
+  CF_PARALLEL_ROWS (&l->box, l->threads, at) apply_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
 }
 
 void cf_level_residual(const cf_level *l, const cf_cell x, const cf_cell b, const cf_cell r) {
   fill_seams(l, x);
   const row w = {.level = l, .x = x.at, .b = b.at, .out = r.at};
-  CF_PARALLEL_ROWS(&l->box, l->threads, at) residual_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
+  CF_PARALLEL_ROWS (&l->box, l->threads, at)
+    residual_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
 }
 
 void cf_level_smooth(const cf_level *l, const cf_cell b, const cf_real omega, const cf_cell x) {
   for (int colour = 0; colour < 2; ++colour) {
     fill_seams(l, x);
     const row w = {.level = l, .b = b.at, .out = x.at, .omega = omega, .colour = colour};
-    CF_PARALLEL_ROWS(&l->box, l->threads, at) smooth_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
+    CF_PARALLEL_ROWS (&l->box, l->threads, at)
+      smooth_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
   }
 }
 
@@ -138,7 +140,6 @@ double cf_level_stiffness(const cf_level *l) {
   if (l->variable || l->alpha == 0) return INFINITY;
   return off / l->alpha;
 }
-
 
 /* Widths vary in the last cell of an axis only, but that may be any level's. */
 CF_CLONES static double dot_row(const int n, const cf_real *x, const cf_real *y, const double *width) {
@@ -160,16 +161,19 @@ CF_CLONES static double weighted_row(const int n, const cf_real *x, const double
 }
 
 static double weighted_sum(const cf_level *l, const cf_real *x, const cf_real *y) {
-  CF_PARALLEL_ROWS(&l->box, l->threads, r) {
+  CF_PARALLEL_ROWS (&l->box, l->threads, r) {
     const ptrdiff_t p = cf_box_row(&l->box, r);
     const double *width = l->axis[0].width;
-    const double area = l->axis[1].width[r % l->box.n[1]] * (l->box.dim == 3 ? l->axis[2].width[r / l->box.n[1]] : 1);
+    const double area =
+        l->axis[1].width[r % l->box.n[1]] * (l->box.dim == 3 ? l->axis[2].width[r / l->box.n[1]] : 1);
     const int n = l->box.n[0];
     l->rows[r] = area * (y != NULL ? dot_row(n, x + p, y + p, width) : weighted_row(n, x + p, width));
   }
   return cf_sum_ordered(l->rows, cf_box_rows(&l->box));
 }
 
-double cf_level_dot(const cf_level *l, const cf_cell x, const cf_cell y) { return weighted_sum(l, x.at, y.at); }
+double cf_level_dot(const cf_level *l, const cf_cell x, const cf_cell y) {
+  return weighted_sum(l, x.at, y.at);
+}
 
 double cf_level_sum(const cf_level *l, const cf_cell x) { return weighted_sum(l, x.at, NULL); }

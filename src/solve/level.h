@@ -30,7 +30,7 @@ typedef struct cf_axis {
   int n;
   bool periodic, held[2];
   double *width;
-  cf_real *lo, *hi; /* see above; with a constant beta these are multiplied by it */
+  cf_real *lo, *hi;  /* see above; with a constant beta these are multiplied by it */
   double *lo1, *hi1; /* the same without beta */
 } cf_axis;
 

@@ -67,7 +67,8 @@ static void solve_singular(line *t, const double *width, double *x) {
   for (int i = 0; i <= t->n; ++i) x[i] -= sum / length;
 }
 
-void cf_level_solve_line(const cf_level *l, const bool singular, const cf_cell b, double *work, const cf_cell x) {
+void cf_level_solve_line(const cf_level *l, const bool singular, const cf_cell b, double *work,
+                         const cf_cell x) {
   const int axis = line_axis(l), n = l->box.n[axis];
   const ptrdiff_t step = l->box.stride[axis];
   line t = {n, work, work + n, work + 2 * n};

@@ -20,8 +20,8 @@
 #define STIFF_ENOUGH 3.0
 
 void cf_level_clear(const cf_level *l, const cf_cell x) {
-  CF_PARALLEL_ROWS(&l->box, l->threads, r)
-  memset(x.at + cf_box_row(&l->box, r), 0, (size_t)l->box.n[0] * sizeof(cf_real));
+  CF_PARALLEL_ROWS (&l->box, l->threads, r)
+    memset(x.at + cf_box_row(&l->box, r), 0, (size_t)l->box.n[0] * sizeof(cf_real));
 }
 
 static void level_destroy(cf_level *l, const bool finest) {
@@ -106,7 +106,8 @@ static cf_status hierarchy_create(cf_helmholtz *A) {
   A->levels = 1;
   CF_TRY(finest_create(A, &A->level[0]));
   bool coarsened[3];
-  while (!cf_level_is_line(&A->level[A->levels - 1]) && axes_to_coarsen(&A->level[A->levels - 1], coarsened) && A->levels < CF_LEVELS_MAX &&
+  while (!cf_level_is_line(&A->level[A->levels - 1]) &&
+         axes_to_coarsen(&A->level[A->levels - 1], coarsened) && A->levels < CF_LEVELS_MAX &&
          (A->wanted == 0 || A->levels < A->wanted)) {
     ++A->levels; /* counted first, so that a failure within frees it */
     CF_TRY(coarser_create(A, &A->level[A->levels - 2], coarsened, &A->level[A->levels - 1]));
@@ -234,7 +235,8 @@ static cf_status shape_coarsest(cf_helmholtz *A) {
 
 cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
   if (!(c->alpha >= 0) || !(c->beta >= 0) || !isfinite(c->alpha) || !isfinite(c->beta))
-    return cf_fail(CF_BAD_ARGUMENT, "alpha = %g, beta = %g: must be finite and not negative", c->alpha, c->beta);
+    return cf_fail(CF_BAD_ARGUMENT, "alpha = %g, beta = %g: must be finite and not negative", c->alpha,
+                   c->beta);
   const bool variable = c->alpha_at != NULL || c->beta_at != NULL;
   if (variable)
     CF_TRY(set_variable(A, c));

@@ -16,8 +16,8 @@ struct cf_helmholtz {
   int levels, wanted; /* levels made; asked for by the caller, 0: as needed */
   int depth;          /* levels that the present coefficients use */
   cf_level level[CF_LEVELS_MAX];
-  cf_halo outside; /* what a caller's x must hold beyond the walls: the other side, or 0 */
-  bool singular;   /* alpha = 0 and no held wall */
+  cf_halo outside;            /* what a caller's x must hold beyond the walls: the other side, or 0 */
+  bool singular;              /* alpha = 0 and no held wall */
   bool owns_alpha, owns_beta; /* level 0's fields are ours, filled with a number */
   cf_cell r, p, Ap, z;        /* of conjugate gradients on the finest level */
   cf_cell coarse[3];          /* the same on the coarsest */

@@ -13,7 +13,6 @@
 #include "grid/sweep.h"
 #include "solve/multigrid.h"
 
-
 CF_CLONES static void add_row(const int n, const cf_real factor, const cf_real *from, cf_real *to) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) to[i] += factor * from[i];
@@ -31,7 +30,7 @@ CF_CLONES static void shift_row(const int n, const cf_real amount, cf_real *x) {
 
 /* to += factor from. */
 static void add_scaled(const cf_level *l, const double factor, const cf_cell from, const cf_cell to) {
-  CF_PARALLEL_ROWS(&l->box, l->threads, r) {
+  CF_PARALLEL_ROWS (&l->box, l->threads, r) {
     const ptrdiff_t p = cf_box_row(&l->box, r);
     add_row(l->box.n[0], (cf_real)factor, from.at + p, to.at + p);
   }
@@ -39,15 +38,15 @@ static void add_scaled(const cf_level *l, const double factor, const cf_cell fro
 
 /* to = from + factor to. */
 static void scale_and_add(const cf_level *l, const double factor, const cf_cell from, const cf_cell to) {
-  CF_PARALLEL_ROWS(&l->box, l->threads, r) {
+  CF_PARALLEL_ROWS (&l->box, l->threads, r) {
     const ptrdiff_t p = cf_box_row(&l->box, r);
     scale_add_row(l->box.n[0], (cf_real)factor, from.at + p, to.at + p);
   }
 }
 
 static void shift(const cf_level *l, const double amount, const cf_cell x) {
-  CF_PARALLEL_ROWS(&l->box, l->threads, r)
-  shift_row(l->box.n[0], (cf_real)amount, x.at + cf_box_row(&l->box, r));
+  CF_PARALLEL_ROWS (&l->box, l->threads, r)
+    shift_row(l->box.n[0], (cf_real)amount, x.at + cf_box_row(&l->box, r));
 }
 
 static double volume(const cf_level *l) {
@@ -111,7 +110,6 @@ double cf_helmholtz_residual(cf_helmholtz *A, const cf_cell x, const cf_cell b) 
   return bb > 0 ? sqrt(cf_level_dot(l, A->z, A->z) / bb) : sqrt(cf_level_dot(l, A->z, A->z));
 }
 
-
 cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                              cf_solve_report *report) {
   cf_level *l = &A->level[0];
@@ -124,7 +122,8 @@ cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_op
   const double bb = cf_level_dot(l, b, b);
   double rr = cf_level_dot(l, r, r);
   if (!isfinite(bb) || !isfinite(rr))
-    return cf_fail(CF_NOT_FINITE, "the equation to solve holds a value that is not finite (|b| = %g, |b - A x| = %g)",
+    return cf_fail(CF_NOT_FINITE,
+                   "the equation to solve holds a value that is not finite (|b| = %g, |b - A x| = %g)",
                    sqrt(bb), sqrt(rr));
   if (bb == 0) cf_level_clear(l, x);
   const double enough = o->tolerance * o->tolerance * bb;

@@ -160,8 +160,9 @@ static void restrict_row(const cf_level *fine, const cf_real *r, const cf_level 
 
 void cf_level_restrict(const cf_level *fine, const cf_cell r, const cf_level *coarse, const cf_cell b,
                        cf_real *scratch) {
-  CF_PARALLEL_ROWS(&coarse->box, coarse->threads, row)
-  restrict_row(fine, r.at, coarse, row, scratch + (ptrdiff_t)omp_get_thread_num() * (fine->box.n[0] + 2), b.at);
+  CF_PARALLEL_ROWS (&coarse->box, coarse->threads, row)
+    restrict_row(fine, r.at, coarse, row, scratch + (ptrdiff_t)omp_get_thread_num() * (fine->box.n[0] + 2),
+                 b.at);
 }
 
 /* x[2I], x[2I+1] += interpolated from c[I] and its two neighbours. */
@@ -204,8 +205,9 @@ static void prolong_row(const cf_level *coarse, const cf_real *x_c, const cf_lev
 void cf_level_prolong(const cf_level *coarse, const cf_cell x_c, const cf_level *fine, const cf_cell x_f,
                       cf_real *scratch) {
   if (coarse->has_seam) cf_halo_fill(&coarse->box, &coarse->wrap, 1, -1, x_c.at);
-  CF_PARALLEL_ROWS(&fine->box, fine->threads, row)
-  prolong_row(coarse, x_c.at, fine, row, scratch + (ptrdiff_t)omp_get_thread_num() * (fine->box.n[0] + 2), x_f.at);
+  CF_PARALLEL_ROWS (&fine->box, fine->threads, row)
+    prolong_row(coarse, x_c.at, fine, row, scratch + (ptrdiff_t)omp_get_thread_num() * (fine->box.n[0] + 2),
+                x_f.at);
 }
 
 static double mean_face(const cf_level *fine, const cf_level *coarse, const int axis, const int at[3]) {

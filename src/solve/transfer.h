@@ -14,7 +14,8 @@
 
 /* Fills the pairing of `fine` towards an axis of `coarse`, and makes the coarse axis itself.
  * CF_NO_MEMORY; what was allocated is freed with cf_axis_clear and cf_pairing_clear. */
-cf_status cf_axis_coarsen(const cf_axis *fine, bool coarsened, double h, cf_pairing *pairing, cf_axis *coarse);
+cf_status cf_axis_coarsen(const cf_axis *fine, bool coarsened, double h, cf_pairing *pairing,
+                          cf_axis *coarse);
 
 /* The axis of a fine grid: n cells of width 1 (times h metres). */
 cf_status cf_axis_create(cf_axis *axis, int n, double h, const cf_wall wall[2]);
@@ -25,7 +26,8 @@ void cf_pairing_clear(cf_pairing *pairing);
 void cf_level_restrict(const cf_level *fine, cf_cell r, const cf_level *coarse, cf_cell b, cf_real *scratch);
 
 /* x_f += P x_c. x_c's periodic ghosts are filled first. */
-void cf_level_prolong(const cf_level *coarse, cf_cell x_c, const cf_level *fine, cf_cell x_f, cf_real *scratch);
+void cf_level_prolong(const cf_level *coarse, cf_cell x_c, const cf_level *fine, cf_cell x_f,
+                      cf_real *scratch);
 
 /* The face field beta of the coarse level: the mean of the fine faces that make up a coarse face. */
 void cf_level_restrict_faces(const cf_level *fine, const cf_level *coarse);

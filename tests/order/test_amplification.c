@@ -32,7 +32,8 @@ static void run(const table *t, const int row, const cf_diffuse_scheme scheme, d
   cf_ledger ledger = {.first = cf_diffuse_content(d, phi)};
   cf_solve_report report;
   const double dt = table_at(t, row, "dt");
-  for (int s = 0; s < (int)table_at(t, row, "nsteps"); ++s) OK(cf_diffuse_step(d, s * dt, dt, phi, q, &ledger, &report));
+  for (int s = 0; s < (int)table_at(t, row, "nsteps"); ++s)
+    OK(cf_diffuse_step(d, s * dt, dt, phi, q, &ledger, &report));
   *P = *Q = 0;
   for (int i = 0; i < n[0]; ++i) *P += 2.0 / n[0] * (double)phi.at[i] * cos(K * (i + 0.5) * h);
   for (int i = 1; i < n[0]; ++i) *Q += 2.0 / n[0] * (double)q.at[0][i] * sin(K * i * h);

@@ -16,18 +16,18 @@
 #include "base/status.h"
 
 /* A call that must succeed; the sentence is shown where it does not. */
-#define OK(call)                                                             \
-  do {                                                                       \
-    const cf_status ok_ = (call);                                            \
+#define OK(call)                                                                     \
+  do {                                                                               \
+    const cf_status ok_ = (call);                                                    \
     if (ok_ != CF_OK) fail_msg("%s: %s", cf_status_name(ok_), cf_status_sentence()); \
   } while (0)
 
 /* |a - b| <= tolerance, said with all digits. */
-#define CLOSE(a, b, tolerance)                                                                          \
-  do {                                                                                                  \
-    const double a_ = (double)(a), b_ = (double)(b), t_ = (double)(tolerance);                          \
-    if (!(a_ - b_ <= t_ && b_ - a_ <= t_))                                                              \
-      fail_msg("%s = %.17g, expected %.17g, off by %.3g (allowed %.3g)", #a, a_, b_, a_ - b_, t_);      \
+#define CLOSE(a, b, tolerance)                                                                     \
+  do {                                                                                             \
+    const double a_ = (double)(a), b_ = (double)(b), t_ = (double)(tolerance);                     \
+    if (!(a_ - b_ <= t_ && b_ - a_ <= t_))                                                         \
+      fail_msg("%s = %.17g, expected %.17g, off by %.3g (allowed %.3g)", #a, a_, b_, a_ - b_, t_); \
   } while (0)
 
 #define BELOW(a, bound)                                                       \

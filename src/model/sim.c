@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT */
+#include "model/sim.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "grid/sweep.h"
+
+static cf_status register_clock(cf_sim *sim) {
+  CF_TRY(cf_registry_add_numbers(&sim->registry, "time", "s", &sim->time, 1));
+  CF_TRY(cf_registry_add_numbers(&sim->registry, "dt", "s", &sim->dt, 1));
+  CF_TRY(cf_registry_add_counter(&sim->registry, "step", &sim->step));
+  return cf_registry_add_counter(&sim->registry, "frame", &sim->frame);
+}
+
+static cf_status create(cf_sim *sim, const int threads) {
+  const cf_scene *scene = sim->scene;
+  int cells[3] = {1, 1, 1};
+  for (int a = 0; a < scene->dim; ++a) cells[a] = (int)scene->domain.cells.value[a];
+  CF_TRY(cf_grid_init(&sim->grid, scene->dim, cells, scene->spacing,
+                      scene->domain.origin.count > 0 ? scene->domain.origin.value : NULL));
+  sim->grid.threads = threads;
+  CF_TRY(cf_registry_init(&sim->registry, &sim->grid));
+  CF_TRY(register_clock(sim));
+  return sim->model->create(&sim->state, scene, &sim->registry);
+}
+
+cf_status cf_sim_create(cf_sim **sim, const cf_scene *scene, const int threads) {
+  *sim = NULL;
+  cf_sim *fresh;
+  CF_TRY(CF_NEW(&fresh, 1));
+  fresh->scene = scene;
+  fresh->model = cf_model_of(scene->model);
+  fresh->end = scene->time.end;
+  const cf_status s = create(fresh, threads);
+  if (s != CF_OK) {
+    cf_sim_destroy(fresh);
+    return s;
+  }
+  *sim = fresh;
+  return CF_OK;
+}
+
+void cf_sim_destroy(cf_sim *sim) {
+  if (sim == NULL) return;
+  sim->model->destroy(sim->state);
+  cf_registry_clear(&sim->registry);
+  cf_free(sim);
+}
+
+cf_status cf_sim_restored(cf_sim *sim) {
+  return sim->model->restored != NULL ? sim->model->restored(sim->state) : CF_OK;
+}
+
+/* --- frames -----------------------------------------------------------------------------------------------
+ */
+
+int64_t cf_sim_frames(const cf_sim *sim) {
+  const double rate = sim->scene->time.frames, whole = sim->scene->time.end * rate;
+  if (rate == 0) return 2;
+  const double nearest = round(whole);
+  if (fabs(whole - nearest) <= 1e-9 * CF_MAX(1, nearest)) return (int64_t)nearest + 1;
+  return (int64_t)floor(whole) + 2;
+}
+
+double cf_sim_frame_time(const cf_sim *sim, const int64_t i) {
+  if (i <= 0) return 0;
+  return i >= cf_sim_frames(sim) - 1 ? sim->scene->time.end : (double)i / sim->scene->time.frames;
+}
+
+bool cf_sim_finished(const cf_sim *sim) { return sim->time >= sim->end; }
+
+/* --- a step -----------------------------------------------------------------------------------------------
+ */
+
+static cf_status check_finite(const cf_sim *sim) {
+  for (int e = 0; e < sim->registry.count; ++e) {
+    const cf_entry *entry = &sim->registry.entry[e];
+    int where[3];
+    if (entry->kind != CF_KIND_CELL) continue;
+    if (!cf_sweep_finite(&sim->grid.box, sim->grid.threads, entry->cell.at, where))
+      return cf_fail(CF_NOT_FINITE,
+                     "%s stopped being finite in cell (%d, %d, %d) in step %lld at t = %g s (dt = %g s): "
+                     "try a smaller dt, or look at the sources and expressions there",
+                     entry->name, where[0], where[1], where[2], (long long)sim->step, sim->time, sim->dt);
+  }
+  return CF_OK;
+}
+
+static cf_status check_converged(const cf_sim *sim) {
+  const cf_solve_report *solve = &sim->report.solve;
+  if (solve->converged || sim->scene->solver.on_stall != CF_SCENE_STALL_STOP) return CF_OK;
+  return cf_fail(
+      CF_NOT_CONVERGED,
+      "the solver stopped at a residual of %.3g after %d iterations in step %lld (t = %g s), above "
+      "solver.tolerance = %g: raise the tolerance or solver.max_iterations, or take a smaller dt",
+      solve->residual, solve->iterations, (long long)sim->step, sim->time, sim->scene->solver.tolerance);
+}
+
+cf_status cf_sim_step(cf_sim *sim, bool *on_frame) {
+  const double wish =
+      isnan(sim->scene->time.dt) ? sim->model->natural_dt(sim->state, sim->time) : sim->scene->time.dt;
+  const double frame_time = cf_sim_frame_time(sim, sim->frame + 1), stop = CF_MIN(frame_time, sim->end);
+  const double left = stop - sim->time;
+  const bool lands = left <= wish * (1 + 1e-9);
+  const double dt = lands ? left : wish;
+  if (!(sim->time + dt > sim->time))
+    return cf_fail(CF_FAILED, "the step of %g s is too short to move time on from t = %g s", dt, sim->time);
+  memset(&sim->report, 0, sizeof sim->report);
+  sim->report.solve.converged = true;
+  CF_TRY(sim->model->step(sim->state, sim->time, dt, &sim->report));
+  sim->time = lands ? stop : sim->time + dt;
+  sim->dt = dt;
+  ++sim->step;
+  *on_frame = lands && stop == frame_time;
+  if (*on_frame) ++sim->frame;
+  CF_TRY(check_finite(sim));
+  return check_converged(sim);
+}
+
+/* --- metrics ----------------------------------------------------------------------------------------------
+ */
+
+#define COMMON_METRICS 5
+
+int cf_sim_metric_names(const cf_sim *sim, cf_metric *names) {
+  static const char *const common[COMMON_METRICS] = {"step", "time", "dt", "iterations", "residual"};
+  for (int i = 0; i < COMMON_METRICS; ++i) snprintf(names[i].name, sizeof names[i].name, "%s", common[i]);
+  return COMMON_METRICS + sim->model->metric_names(sim->state, names + COMMON_METRICS);
+}
+
+void cf_sim_metrics(const cf_sim *sim, double *values) {
+  values[0] = (double)sim->step;
+  values[1] = sim->time;
+  values[2] = sim->dt;
+  values[3] = sim->report.solve.iterations;
+  values[4] = sim->report.solve.residual;
+  sim->model->metrics(sim->state, values + COMMON_METRICS);
+}

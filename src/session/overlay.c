@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+#include "session/overlay.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "stencil/regime.h"
+
+#define EDGE_COLOUR \
+  (cf_colour) { 40, 110, 235 }
+
+static double velocity_at(const cf_scene *scene, const int axis, const double *x) {
+  const cf_function *f = &scene->velocity.axis[scene->velocity.count > 1 ? axis : 0];
+  return cf_fn_at(&f->fn, x[0], x[1], 0, 0);
+}
+
+static void add_edge(cf_overlay *o, const double *apex, const double direction, const double length) {
+  double(*at)[2] = o->at[o->count];
+  at[0][0] = apex[0];
+  at[0][1] = apex[1];
+  at[1][0] = apex[0] + length * cos(direction);
+  at[1][1] = apex[1] + length * sin(direction);
+  o->line[o->count] = (cf_polyline){.count = 2,
+                                    .at = (const double(*)[2])at,
+                                    .colour = EDGE_COLOUR,
+                                    .width = 2,
+                                    .dash = 9,
+                                    .label = o->label[o->count]};
+  ++o->count;
+}
+
+void cf_overlay_cones(const cf_sim *sim, const char *field, cf_overlay *o) {
+  const cf_scene *scene = sim->scene;
+  const int f = cf_scene_field_index(scene, field);
+  o->count = 0;
+  if (scene->dim != 2 || f < 0 || sim->time == 0) return;
+  const cf_scene_diffusion *d = &scene->fields.item[f].diffusion;
+  if (!cf_fn_is_constant(&d->k.fn) || !cf_fn_is_constant(&d->capacity.fn)) return;
+  const double c = cf_wave_speed(d->k.fn.value / d->capacity.fn.value, d->tau, d->f_t);
+  for (int i = 0; i < scene->sources.count && o->count + 2 <= CF_OVERLAY_MAX; ++i) {
+    const cf_scene_source *s = &scene->sources.item[i];
+    if (strcmp(s->field, field) != 0 || (!s->given.at && s->shape == CF_SCENE_SHAPE_EVERYWHERE)) continue;
+    const double *apex = s->given.at ? s->at.value : s->center.value;
+    const double u = velocity_at(scene, 0, apex), v = velocity_at(scene, 1, apex), speed = hypot(u, v);
+    if (!(c > 0) || !isfinite(c) || !(speed > c)) continue;
+    const double half = asin(c / speed), along = atan2(v, u),
+                 length = sqrt(speed * speed - c * c) * sim->time;
+    snprintf(o->label[o->count], sizeof o->label[0], "%.1f\xc2\xb0", half * 180 / acos(-1.0));
+    o->label[o->count + 1][0] = '\0';
+    add_edge(o, apex, along + half, length);
+    add_edge(o, apex, along - half, length);
+    o->line[o->count - 1].label = NULL;
+  }
+}
