@@ -103,8 +103,7 @@ cf_status cf_expr_name_check(const char *name) {
   return CF_OK;
 }
 
-/* The known name that an unknown one may have been meant as; NULL: none. */
-static const char *nearest(const cf_expr_constants *constants, const char *name, char *function) {
+static const char *nearest_constant(const cf_expr_constants *constants, const char *name) {
   const char *best = NULL;
   int least = 0;
   for (int i = 0; i < constants->count; ++i) {
@@ -113,28 +112,37 @@ static const char *nearest(const cf_expr_constants *constants, const char *name,
     best = constants->name[i];
     least = distance;
   }
+  return best;
+}
+
+/* The function that is most like `name`, written to `best`. */
+static const char *nearest_function(const char *name, char *best) {
+  int least = -1;
   for (const char *at = CF_EXPR_FUNCTIONS; *at != '\0';) {
     char each[NAME_MAX_LENGTH + 1];
     const size_t n = strcspn(at, " ");
     memcpy(each, at, n);
     each[n] = '\0';
     const int distance = cf_param_distance(name, each);
-    if (distance >= 0 && (best == NULL || distance < least)) {
-      best = strcpy(function, each);
+    if (distance >= 0 && (least < 0 || distance < least)) {
+      memcpy(best, each, n + 1);
       least = distance;
     }
     at += n + (at[n] == ' ' ? 1 : 0);
   }
-  return best;
+  return least >= 0 ? best : NULL;
 }
 
+/* A name with a parenthesis behind it was meant as a function, any other as a constant. */
 static cf_status unknown_name(const cf_expr_constants *constants, const char *name, const size_t length) {
   char copy[NAME_MAX_LENGTH + 1], function[NAME_MAX_LENGTH + 1];
   if (length > NAME_MAX_LENGTH) return cf_fail(CF_BAD_ARGUMENT, "%.60s... is not known", name);
   memcpy(copy, name, length);
   copy[length] = '\0';
-  const char *meant = nearest(constants, copy, function);
+  const bool called = name[length + strspn(name + length, " ")] == '(';
+  const char *meant = called ? nearest_function(copy, function) : nearest_constant(constants, copy);
   if (meant != NULL) return cf_fail(CF_BAD_ARGUMENT, "%s is not known: did you mean %s?", copy, meant);
+  if (called) return cf_fail(CF_BAD_ARGUMENT, "there is no function %s", copy);
   return cf_fail(CF_BAD_ARGUMENT, "%s is not known (names for numbers go under let)", copy);
 }
 
@@ -291,7 +299,7 @@ static cf_status syntax_error(cf_parser *parser, const char *text, cf_expr_place
   if (strstr(message, "end of expression") != NULL)
     cf_fail(CF_BAD_ARGUMENT, "the expression ends too early");
   else if (strstr(message, "arguments") != NULL || strstr(message, "parameters") != NULL)
-    cf_fail(CF_BAD_ARGUMENT, "the function has not the number of arguments it needs");
+    cf_fail(CF_BAD_ARGUMENT, "the function has the wrong number of arguments");
   else if (strstr(message, "if-then-else") != NULL || strstr(message, "colon") != NULL)
     cf_fail(CF_BAD_ARGUMENT, "a choice is written condition ? this : that");
   else if (token_length > 0)

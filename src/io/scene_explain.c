@@ -61,7 +61,9 @@ static void add_range(cf_writing *out, const cf_param *param) {
 static void add_default(cf_writing *out, const cf_param *param) {
   if (param->fallback == CF_REQUIRED)
     cf_writing_add(out, "  default  none: must be given\n");
-  else if (param->fallback != CF_NONE)
+  else if (param->fallback == CF_NONE)
+    cf_writing_add(out, "  default  none: may be left out\n");
+  else
     cf_writing_add(out, "  default  %s\n", param->fallback[0] != '\0' ? param->fallback : "empty");
 }
 

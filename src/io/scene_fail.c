@@ -8,7 +8,7 @@
  *     try: cattaneo explain diffusion.k
  *
  * Columns are counted in characters from 1. A long line is shown in part, around the place. An error in an
- * override has `--set` for file, line and column, and shows the override.
+ * override has `--set` for file, line and column, and shows the override as it was written.
  */
 #include <stdio.h>
 #include <string.h>
@@ -68,7 +68,7 @@ static void clip(cf_line *line) {
 }
 
 /* "  k: 1e-3 m/s\n     ^~~~~~~~\n": blanks under the line keep its tabs. */
-static void draw(const cf_line *line, char *drawn, const size_t size) {
+static void draw(const cf_line *line, const char *before, char *drawn, const size_t size) {
   char blanks[LINE_SHOWN + 8], marks[UNDERLINE_MAX + 2];
   size_t n = 0;
   for (size_t i = 0; i < line->from && n < sizeof blanks - 1; ++i)
@@ -80,7 +80,8 @@ static void draw(const cf_line *line, char *drawn, const size_t size) {
   memset(marks, '~', length);
   marks[0] = '^';
   marks[length] = '\0';
-  snprintf(drawn, size, "\n%.*s\n%s%s", (int)line->length, line->text, blanks, marks);
+  snprintf(drawn, size, "\n%s%.*s\n%*s%s%s", before, (int)line->length, line->text, (int)strlen(before), "",
+           blanks, marks);
 }
 
 cf_status cf_config_vfail(const cf_config *config, const cf_about about, const char *format, va_list values) {
@@ -97,7 +98,7 @@ cf_status cf_config_vfail(const cf_config *config, const cf_about about, const c
   if (about.place.length > 0) {
     if (about.place.source == 0) snprintf(where, sizeof where, "%s:%d:%d", shown, line.number, column);
     clip(&line);
-    draw(&line, drawn, sizeof drawn);
+    draw(&line, about.place.source == 0 ? "" : "--set ", drawn, sizeof drawn);
   }
   if (about.key != NULL)
     snprintf(more, sizeof more, "\ntry: cattaneo explain%s%.80s", about.key[0] != '\0' ? " " : "", about.key);

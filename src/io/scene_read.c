@@ -31,6 +31,7 @@ static cf_status read_stream(cf_config *config, FILE *stream, const char *path) 
   struct stat about;
   if (fstat(fileno(stream), &about) != 0) return fail_file(path, strerror(errno));
   if (S_ISDIR(about.st_mode)) return fail_file(path, "this is a folder, a scene is a file");
+  if (!S_ISREG(about.st_mode)) return fail_file(path, "this is not a file");
   if (about.st_size > CF_SCENE_BYTES) {
     snprintf(why, sizeof why, "the file has %.1f MB, a scene has at most %ld MB",
              (double)about.st_size / 1048576.0, CF_SCENE_BYTES >> 20);

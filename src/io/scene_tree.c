@@ -178,7 +178,8 @@ static cf_status entry(cf_config *config, cf_node *parent, const cf_place part, 
   const cf_about about = {part, NULL};
   if (parent->kind == CF_NODE_SCALAR && parent->text[0] == '\0') parent->kind = CF_NODE_MAP;
   if (parent->kind == CF_NODE_SCALAR)
-    return cf_config_fail(config, about, "what stands before %.*s is a single value",
+    return cf_config_fail(config, about, "%.*s is a single value, it has no %.*s",
+                          (int)CF_MIN(part.at > 0 ? part.at - 1 : 0, 80u), s->text,
                           (int)CF_MIN(part.length, 60u), name);
   *child = step(parent, name, part.length);
   if (*child != NULL) return CF_OK;

@@ -48,14 +48,29 @@ typedef struct cf_quantity {
   char number[1024]; /* the text of the expression, without the unit */
 } cf_quantity;
 
-static bool starts_unit(const char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || ((unsigned char)c & 0x80u) != 0;
+/* A letter, a percent sign, or one of the signs that stand before or for a unit. */
+static bool starts_unit(const char *text) {
+  static const char *const signs[] = {"%", "\u00B5", "\u03BC", "\u00B0", "\u03A9", "\u2126", "\u00C5"};
+  if ((*text >= 'a' && *text <= 'z') || (*text >= 'A' && *text <= 'Z')) return true;
+  for (size_t i = 0; i < sizeof signs / sizeof signs[0]; ++i)
+    if (strncmp(text, signs[i], strlen(signs[i])) == 0) return true;
+  return false;
+}
+
+/* Length of the plain number that a text starts with. */
+static size_t plain_number(const char *text) {
+  const size_t sign = *text == '-' || *text == '+' ? 1 : 0;
+  size_t n = sign + strspn(text + sign, "0123456789.");
+  const size_t power = n + (text[n] == 'e' || text[n] == 'E' ? 1 : 0);
+  const size_t power_sign = power > n && (text[power] == '-' || text[power] == '+') ? 1 : 0;
+  const size_t digits = power > n ? strspn(text + power + power_sign, "0123456789") : 0;
+  return digits > 0 ? power + power_sign + digits : n;
 }
 
 /* Whether a unit may begin at `at`: after a blank, or right behind a plain number. */
 static bool may_split(const char *text, const size_t at) {
-  if (at == 0 || !starts_unit(text[at])) return false;
-  return text[at - 1] == ' ' || strspn(text, "+-.0123456789eE") >= at;
+  if (at == 0 || !starts_unit(text + at)) return false;
+  return text[at - 1] == ' ' || plain_number(text) == at;
 }
 
 static cf_status split_unit(const cf_reader *reader, const char *text, const cf_expr_variables variables,
@@ -183,7 +198,8 @@ static cf_status read_functions(cf_reader *reader, const cf_param *param, const 
     return cf_value_function(reader, param, node, variables, &functions->axis[0]);
   }
   if (node->count < 1 || node->count > 3)
-    return cf_reader_fail(reader, node, "%s has %d entries: must be one an axis", reader->path, node->count);
+    return cf_reader_fail(reader, node, "%s has %d %s: must be one an axis", reader->path, node->count,
+                          node->count == 1 ? "entry" : "entries");
   const cf_node *entry = node->first;
   for (int a = 0; a < node->count; ++a, entry = entry->next)
     CF_TRY(cf_value_function(reader, param, entry, variables, &functions->axis[a]));
@@ -246,7 +262,8 @@ static cf_status expect_list(const cf_reader *reader, const cf_param *param, con
   if (node->count >= range.count_min && node->count <= range.count_max) return CF_OK;
   snprintf(many, sizeof many, range.count_min == range.count_max ? "%d" : "%d or %d", range.count_min,
            range.count_max);
-  return cf_reader_fail(reader, node, "%s has %d entries: must be %s", reader->path, node->count, many);
+  return cf_reader_fail(reader, node, "%s has %d %s: must be %s", reader->path, node->count,
+                        node->count == 1 ? "entry" : "entries", many);
 }
 
 static cf_status read_numbers(cf_reader *reader, const cf_param *param, const cf_node *node,
@@ -299,7 +316,7 @@ static cf_status add_word(cf_reader *reader, const cf_param *param, const cf_nod
   return CF_OK;
 }
 
-/* A list of words, or one text with commas: "vtkhdf, png". */
+/* A list of words, or one text with commas, as defaults are: "[vtkhdf, png]". */
 static cf_status read_words(cf_reader *reader, const cf_param *param, const cf_node *node, unsigned *set) {
   *set = 0;
   if (node->kind == CF_NODE_LIST) {
@@ -310,13 +327,13 @@ static cf_status read_words(cf_reader *reader, const cf_param *param, const cf_n
     return CF_OK;
   }
   CF_TRY(cf_value_expect_scalar(reader, param, node));
-  for (const char *at = node->text + strspn(node->text, ", "); *at != '\0';) {
+  for (const char *at = node->text + strspn(node->text, "[, ]"); *at != '\0';) {
     char word[64];
-    const size_t n = strcspn(at, ", ");
+    const size_t n = strcspn(at, "[, ]");
     snprintf(word, sizeof word, "%.*s", (int)CF_MIN(n, sizeof word - 1), at);
     CF_TRY(add_word(reader, param, node, word, set));
     at += n;
-    at += strspn(at, ", ");
+    at += strspn(at, "[, ]");
   }
   return CF_OK;
 }

@@ -41,8 +41,8 @@ static cf_status wall_map(cf_reader *reader, const cf_param *param, const cf_nod
   else if (strcmp(entry->key, "radiate") == 0)
     *kind = CF_WALL_RADIATE;
   else
-    return cf_reader_fail(reader, node, "%s: unknown key %.60s: did you mean value?", reader->path,
-                          entry->key);
+    return cf_config_fail(reader->config, (cf_about){entry->key_place, reader->path},
+                          "%s: unknown key %.60s: did you mean value?", reader->path, entry->key);
   return cf_value_function(reader, param, entry, CF_EXPR_SPACE_TIME, function);
 }
 

@@ -209,8 +209,11 @@ static void add_value(cf_writing *out, const cf_param *param, const void *member
  * ---------------------------------------------------------------------------------------------------------
  */
 
+/* What is left out of a record, and how its first key is indented. */
+typedef enum cf_record_style { CF_RECORD_WHOLE, CF_RECORD_ENTRY, CF_RECORD_GIVEN } cf_record_style;
+
 static void add_record(cf_writing *out, const cf_param_table *table, const char *record, int depth,
-                       bool first_inline);
+                       cf_record_style style);
 
 /* A map writes the name of each entry on a line of its own, a list puts a dash before the first key. */
 static void add_items(cf_writing *out, const cf_param *param, const char *member, const int depth) {
@@ -228,44 +231,52 @@ static void add_items(cf_writing *out, const cf_param *param, const char *member
         if (param->table->param[r].type == CF_PARAM_key)
           cf_writing_add(out, "%s:\n",
                          *(const char *const *)(const void *)(record + param->table->param[r].offset));
-      add_record(out, param->table, record, depth + 2, false);
+      add_record(out, param->table, record, depth + 2, CF_RECORD_WHOLE);
     } else {
       cf_writing_add(out, "- ");
-      add_record(out, param->table, record, depth + 2, true);
+      add_record(out, param->table, record, depth + 2, CF_RECORD_ENTRY);
     }
   }
 }
 
-/* What was not given and has no default is not there. */
-static bool is_there(const cf_param *param, const char *record) {
+/* What was not given and has no default is not there; of an optional record, which goes before another one,
+ * only what was given is. */
+static bool is_there(const cf_param *param, const char *record, const cf_record_style style) {
   if (param->type == CF_PARAM_key) return false;
   const bool can_miss = param->table != NULL ? param->type == CF_PARAM_optional : param->fallback == CF_NONE;
-  return !can_miss || *(const bool *)(const void *)(record + param->given);
+  const bool given = *(const bool *)(const void *)(record + param->given);
+  return given || (!can_miss && style != CF_RECORD_GIVEN);
+}
+
+static void add_row(cf_writing *out, const cf_param *param, const char *member, const int depth) {
+  if (param->type == CF_PARAM_list || param->type == CF_PARAM_map) {
+    add_items(out, param, member, depth);
+  } else if (param->table != NULL) {
+    const bool optional = param->type == CF_PARAM_optional;
+    cf_writing_add(out, "\n");
+    add_record(out, param->table, member, depth + 1, optional ? CF_RECORD_GIVEN : CF_RECORD_WHOLE);
+  } else {
+    cf_writing_add(out, " ");
+    add_value(out, param, member);
+    cf_writing_add(out, "\n");
+  }
 }
 
 static void add_record(cf_writing *out, const cf_param_table *table, const char *record, const int depth,
-                       bool first_inline) {
+                       const cf_record_style style) {
+  bool indent = style != CF_RECORD_ENTRY;
   for (int i = 0; i < table->count; ++i) {
     const cf_param *param = &table->param[i];
-    if (!is_there(param, record)) continue;
-    if (!first_inline) add_indent(out, depth);
-    first_inline = false;
+    if (!is_there(param, record, style)) continue;
+    if (indent) add_indent(out, depth);
+    indent = true;
     cf_writing_add(out, "%s:", param->name);
-    if (param->type == CF_PARAM_list || param->type == CF_PARAM_map) {
-      add_items(out, param, record + param->offset, depth);
-    } else if (param->table != NULL) {
-      cf_writing_add(out, "\n");
-      add_record(out, param->table, record + param->offset, depth + 1, false);
-    } else {
-      cf_writing_add(out, " ");
-      add_value(out, param, record + param->offset);
-      cf_writing_add(out, "\n");
-    }
+    add_row(out, param, record + param->offset, depth);
   }
 }
 
 cf_status cf_config_write(const cf_param_table *root, const void *record, char **text) {
   cf_writing out = {.text = NULL};
-  add_record(&out, root, record, 0, false);
+  add_record(&out, root, record, 0, CF_RECORD_WHOLE);
   return cf_writing_end(&out, text);
 }

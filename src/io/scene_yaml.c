@@ -91,12 +91,27 @@ static cf_status convert_list(const cf_yaml *yaml, struct fy_node *from, const c
   return CF_OK;
 }
 
+/* The first scalar in a node is where it starts. */
+static cf_place first_place(const cf_yaml *yaml, struct fy_node *node, const cf_place near) {
+  for (int depth = 0; depth < CF_SCENE_DEPTH && node != NULL; ++depth) {
+    struct fy_token *token = fy_node_is_scalar(node) ? fy_node_get_scalar_token(node) : NULL;
+    if (token != NULL) return token_place(yaml, token, fy_node_get_style(node));
+    if (fy_node_is_sequence(node))
+      node = fy_node_sequence_get_by_index(node, 0);
+    else if (fy_node_is_mapping(node) && fy_node_mapping_get_by_index(node, 0) != NULL)
+      node = fy_node_pair_key(fy_node_mapping_get_by_index(node, 0));
+    else
+      break;
+  }
+  return near;
+}
+
 static cf_status convert_pair(const cf_yaml *yaml, struct fy_node_pair *pair, const cf_place near,
                               const int depth, cf_node *map) {
   struct fy_node *name = fy_node_pair_key(pair), *value = fy_node_pair_value(pair);
   cf_node *key, *child;
   if (name == NULL || fy_node_get_type(name) != FYNT_SCALAR || fy_node_is_alias(name))
-    return fail(yaml, near, "a key is a single word here");
+    return fail(yaml, first_place(yaml, name, near), "a key is a single word here");
   CF_TRY(convert_scalar(yaml, name, near, &key));
   if (key->text[0] == '\0') return fail(yaml, key->place, "a key is missing before the colon");
   if (cf_node_find(map, key->text) != NULL)
@@ -148,13 +163,33 @@ static cf_status convert(const cf_yaml *yaml, struct fy_node *from, const cf_pla
 /* --- documents
  * --------------------------------------------------------------------------------------------------- */
 
+/* Messages of the library that say little, and what we say. */
+static const char *plainer(const char *message) {
+  static const char *const table[][2] = {
+      {"invalid multiline plain key",
+       "this line and the next do not fit together: is the indentation right?"},
+      {"invalid nested block mapping", "a second colon in the line: put the text in quotes"},
+      {"wrongly indented flow", "a bracket before this is not closed"},
+      {"wrongly indented double-quoted", "the quote that opens here is not closed"},
+      {"wrongly indented single-quoted", "the quote that opens here is not closed"},
+      {"without a closing bracket", "a bracket is not closed"},
+      {"without a closing brace", "a brace is not closed"},
+      {"without closing quote", "the quote that opens here is not closed"},
+      {"plain scalar cannot start with", "a text that starts with this sign must be in quotes"},
+      {"invalid tab used as indentation", "a tab cannot indent: use blanks"},
+  };
+  for (size_t i = 0; i < sizeof table / sizeof table[0]; ++i)
+    if (strstr(message, table[i][0]) != NULL) return table[i][1];
+  return message;
+}
+
 /* The first error that the library has collected. */
 static cf_status syntax_error(const cf_yaml *yaml, struct fy_diag *diag) {
   void *iterator = NULL;
   const struct fy_diag_error *error = fy_diag_errors_iterate(diag, &iterator);
   if (error == NULL) return fail(yaml, (cf_place){yaml->source, yaml->from, 1}, "this is not YAML");
   return cf_config_fail(yaml->config, (cf_about){mark_place(yaml, error->line, error->column), NULL},
-                        "%.200s", error->msg);
+                        "%.200s", plainer(error->msg));
 }
 
 static cf_status convert_documents(const cf_yaml *yaml, struct fy_parser *parser, struct fy_diag *diag,
@@ -164,7 +199,7 @@ static cf_status convert_documents(const cf_yaml *yaml, struct fy_parser *parser
   if (document == NULL && fy_diag_got_error(diag)) return syntax_error(yaml, diag);
   if (document == NULL || fy_document_root(document) == NULL) {
     fy_parse_document_destroy(parser, document);
-    return fail(yaml, start, "there is nothing in it");
+    return fail(yaml, (cf_place){yaml->source, yaml->from, 0}, "there is nothing in it");
   }
   cf_status status = convert(yaml, fy_document_root(document), start, 0, root);
   fy_parse_document_destroy(parser, document);

@@ -63,7 +63,6 @@ static cf_status resolve_own_diffusion(cf_scene *scene, cf_scene_field *field) {
   if (!d->given.name) d->name = common->name;
   CF_DIFFUSION_TABLE(CF_INHERIT, )
 #undef CF_INHERIT
-  field->given.diffusion = true;
   return CF_OK;
 }
 
@@ -75,7 +74,8 @@ static const char *side_name(const int axis, const int high) {
   return names[axis][high];
 }
 
-/* Sides that were not named are as in `common`; those of a third axis that is not there are insulated. */
+/* Sides that were not named are as in `common`; those of a third axis that is not there are insulated.
+ * Without `common` all sides count as named afterwards. */
 static void inherit_walls(const cf_scene *scene, cf_param_walls *walls, const cf_param_walls *common) {
   for (int axis = 0; axis < 3; ++axis)
     for (int high = 0; high < 2; ++high) {
@@ -85,7 +85,7 @@ static void inherit_walls(const cf_scene *scene, cf_param_walls *walls, const cf
       walls->walls.kind[axis][high] = inherit ? common->walls.kind[axis][high] : CF_WALL_INSULATED;
       walls->walls.value[axis][high] = inherit ? common->walls.value[axis][high] : cf_fn_constant(0.0);
       walls->text[axis][high] = inherit ? common->text[axis][high] : NULL;
-      walls->given[axis][high] = there;
+      walls->given[axis][high] = there && common == NULL;
     }
 }
 
@@ -143,7 +143,6 @@ static cf_status resolve_scalar(cf_scene *scene, cf_scene_field *field) {
   CF_TRY(cf_scene_check_axes(scene, &field->initial, field->given.initial, 1, key));
   CF_TRY(resolve_own_diffusion(scene, field));
   inherit_walls(scene, &field->walls, &scene->domain.walls);
-  field->given.walls = true;
   snprintf(key, sizeof key, "fields.%s.walls", field->name);
   return check_walls(scene, key, &field->walls);
 }
