@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: MIT */
+#include "physics/advect.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "grid/halo.h"
+#include "grid/sweep.h"
+#include "grid/wall.h"
+#include "stencil/courant.h"
+#include "stencil/ppm.h"
+#include "stencil/stretch.h"
+#include "stencil/trace.h"
+
+#define SAFE_K 0.9 /* at K = 1 all of a cell may be gone after the first sweeps, and rho = 0 */
+
+struct cf_advect {
+  const cf_grid *grid;
+  cf_advect_scheme scheme;
+  cf_face u;
+  bool wrap[3];
+  double rate;           /* K per second */
+  double time, dt;       /* of the step begun; dt of a substep */
+  int substeps;          /* of the step begun */
+  int64_t parity, first; /* of the next step; of the step begun */
+  cf_cell work;
+  cf_face turned;       /* q half a stretch on; committed only where a flux is stretched */
+  cf_wall_values walls; /* room for every wall; the walls are those of the field being moved */
+  cf_real *rows;
+  double *lines;
+};
+
+/* What is being moved. */
+typedef struct moved {
+  int component, count[3];
+  cf_ghost ghost[3][2];
+  bool mass; /* flux form: the sum is kept */
+  cf_real *at;
+} moved;
+
+/* --- making one --------------------------------------------------------------------------------------- */
+
+static cf_status take_scratch(cf_advect *a) {
+  const cf_box *b = &a->grid->box;
+  CF_TRY(cf_cell_create(&a->work, b));
+  CF_TRY(cf_face_create(&a->turned, b));
+  CF_TRY(CF_NEW(&a->rows, cf_ppm_rows(a->grid) * a->grid->threads));
+  CF_TRY(CF_NEW(&a->lines, cf_ppm_lines(a->grid)));
+  for (int axis = 0; axis < b->dim; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const cf_wall_side w = cf_wall_side_of(b, axis, side);
+      CF_TRY(CF_NEW(&a->walls.at[axis][side], (size_t)w.n_b * (size_t)w.n_c));
+    }
+  return CF_OK;
+}
+
+cf_status cf_advect_create(cf_advect **advect, const cf_grid *g, const cf_advect_scheme scheme) {
+  *advect = NULL;
+  cf_advect *a;
+  CF_TRY(CF_NEW(&a, 1));
+  a->grid = a->walls.grid = g;
+  a->scheme = scheme;
+  a->substeps = 1;
+  const cf_status s = take_scratch(a);
+  if (s != CF_OK) {
+    cf_advect_destroy(a);
+    return s;
+  }
+  *advect = a;
+  return CF_OK;
+}
+
+void cf_advect_destroy(cf_advect *a) {
+  if (a == NULL) return;
+  cf_cell_destroy(&a->work, &a->grid->box);
+  cf_face_destroy(&a->turned, &a->grid->box);
+  cf_free(a->rows);
+  cf_free(a->lines);
+  cf_wall_values_destroy(&a->walls);
+  cf_free(a);
+}
+
+/* --- the velocity and the step ------------------------------------------------------------------------ */
+
+cf_status cf_advect_set_velocity(cf_advect *a, const cf_face u, const cf_walls *walls) {
+  a->u = u;
+  for (int axis = 0; axis < a->grid->box.dim; ++axis)
+    a->wrap[axis] = walls->kind[axis][0] == CF_WALL_PERIODIC;
+  cf_courant_ghosts(a->grid, a->wrap, u);
+  return cf_courant_rate(a->grid, u, &a->rate);
+}
+
+double cf_advect_rate(const cf_advect *a) { return a->rate; }
+
+double cf_advect_substeps(const cf_advect *a, const double dt) {
+  const double wanted = ceil(a->rate * dt / SAFE_K);
+  return a->scheme == CF_ADVECT_LINEAR || wanted < 1 ? 1 : wanted;
+}
+
+int64_t *cf_advect_parity(cf_advect *a) { return &a->parity; }
+
+cf_status cf_advect_begin(cf_advect *a, const double t, const double dt) {
+  const double substeps = cf_advect_substeps(a, dt);
+  if (!(substeps <= CF_ADVECT_SUBSTEPS_MAX))
+    return cf_fail(CF_OVER_LIMIT,
+                   "a step of %g s carries things through %g cells, in %g substeps: more than %d; shorten dt",
+                   dt, a->rate * dt, substeps, CF_ADVECT_SUBSTEPS_MAX);
+  a->substeps = (int)substeps;
+  a->time = t;
+  a->dt = dt / substeps;
+  a->first = a->parity;
+  a->parity += a->substeps;
+  return CF_OK;
+}
+
+/* --- one substep -------------------------------------------------------------------------------------- */
+
+/* dim sweeps, each from one field into the other, so that the last one ends where the first began. With three
+ * of them the one along x, which may, stays in place. */
+static void carry(cf_advect *a, const moved *m, const int substep, cf_through *through) {
+  const int dim = a->grid->box.dim;
+  const bool reversed = (a->first + substep) % 2 != 0;
+  cf_ppm_sweep s = {.grid = a->grid,
+                    .component = m->component,
+                    .count = {m->count[0], m->count[1], m->count[2]},
+                    .half = (cf_real)(a->dt / (2 * a->grid->h)),
+                    .u = a->u,
+                    .from = m->at,
+                    .rows = a->rows,
+                    .lines = through != NULL ? a->lines : NULL};
+  double passed[2] = {0, 0};
+  for (int d = 0; d < dim; ++d) {
+    s.axis = reversed ? dim - 1 - d : d;
+    s.swept = d;
+    s.mass = m->mass && d == dim - 1;
+    for (int side = 0; side < 2; ++side) {
+      s.ghost[side] = m->ghost[s.axis][side];
+      s.inflow[side] = a->walls.at[s.axis][side];
+    }
+    const bool in_place = dim == 3 && s.axis == 0;
+    s.to = in_place ? (cf_real *)s.from : s.from == m->at ? a->work.at : m->at;
+    cf_ppm_sweep_run(&s, passed);
+    if (d < 2) s.before[d] = s.axis;
+    s.from = s.to;
+  }
+  if (through == NULL) return;
+  through->entered += passed[0] * cf_grid_volume(a->grid);
+  through->left += passed[1] * cf_grid_volume(a->grid);
+}
+
+/* The paper's step: back along the path, and linear. */
+static void trace(cf_advect *a, const moved *m) {
+  const cf_box *b = &a->grid->box;
+  cf_halo halo;
+  cf_trace t = {.grid = a->grid,
+                .component = m->component,
+                .count = {m->count[0], m->count[1], m->count[2]},
+                .dt = a->dt,
+                .u = a->u,
+                .from = m->at,
+                .to = a->work.at};
+  for (int axis = 0; axis < b->dim; ++axis) {
+    t.wrap[axis] = a->wrap[axis];
+    for (int side = 0; side < 2; ++side) {
+      if (m->ghost[axis][side] == CF_GHOST_INFLOW) t.inflow[axis][side] = a->walls.at[axis][side];
+      halo.rule[axis][side] = t.wrap[axis] ? CF_HALO_WRAP : CF_HALO_COPY;
+    }
+  }
+  cf_halo_fill(b, &halo, 1, m->component, m->at);
+  cf_trace_run(&t);
+  const ptrdiff_t rows = (ptrdiff_t)m->count[1] * m->count[2];
+#pragma omp parallel for schedule(static) num_threads(cf_sweep_threads(b, a->grid->threads))
+  for (ptrdiff_t r = 0; r < rows; ++r) {
+    const ptrdiff_t p = cf_box_at(b, 0, (int)(r % m->count[1]), (int)(r / m->count[1]));
+    memcpy(m->at + p, a->work.at + p, (size_t)m->count[0] * sizeof *m->at);
+  }
+}
+
+/* --- cells -------------------------------------------------------------------------------------------- */
+
+static cf_ghost ghost_of_cells(const cf_wall kind) {
+  if (kind == CF_WALL_PERIODIC) return CF_GHOST_WRAP;
+  return kind == CF_WALL_INSULATED ? CF_GHOST_MIRROR : CF_GHOST_INFLOW;
+}
+
+/* What flows in through the walls of this field: 0 where open, else the wall's function. */
+static void take_walls(cf_advect *a, const cf_walls *walls) {
+  a->walls.walls = *walls;
+  a->walls.known = false;
+  for (int axis = 0; axis < a->grid->box.dim; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const cf_wall_side w = cf_wall_side_of(&a->grid->box, axis, side);
+      cf_wall *kind = &a->walls.walls.kind[axis][side];
+      if (*kind == CF_WALL_RADIATE) *kind = CF_WALL_VALUE;
+      if (*kind != CF_WALL_OPEN) continue;
+      for (ptrdiff_t i = 0; i < (ptrdiff_t)w.n_b * w.n_c; ++i) a->walls.at[axis][side][i] = 0;
+    }
+}
+
+/* A field that wraps where the velocity does not, or the reverse, has no meaning. */
+static cf_status check_walls(const cf_advect *a, const cf_walls *walls) {
+  for (int axis = 0; axis < a->grid->box.dim; ++axis)
+    for (int side = 0; side < 2; ++side)
+      if ((walls->kind[axis][side] == CF_WALL_PERIODIC) != a->wrap[axis])
+        return cf_fail(CF_BAD_ARGUMENT,
+                       "walls of axis %c: periodic for the velocity or for what it carries, but not for both",
+                       "xyz"[axis]);
+  return CF_OK;
+}
+
+cf_status cf_advect_cell(cf_advect *a, const cf_walls *walls, const cf_cell phi, cf_through *through) {
+  CF_TRY(check_walls(a, walls));
+  const int *n = a->grid->box.n;
+  moved m = {.component = CF_CENTRES, .count = {n[0], n[1], n[2]}, .mass = true, .at = phi.at};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) m.ghost[axis][side] = ghost_of_cells(walls->kind[axis][side]);
+  take_walls(a, walls);
+  for (int substep = 0; substep < a->substeps; ++substep) {
+    cf_wall_values_sample(&a->walls, a->time + (substep + 0.5) * a->dt);
+    if (a->scheme == CF_ADVECT_LINEAR)
+      trace(a, &m);
+    else
+      carry(a, &m, substep, through);
+  }
+  return CF_OK;
+}
+
+/* --- faces -------------------------------------------------------------------------------------------- */
+
+static cf_ghost ghost_of_faces(const cf_wall kind, const bool own_axis) {
+  if (kind == CF_WALL_PERIODIC) return CF_GHOST_WRAP;
+  if (kind != CF_WALL_INSULATED) return CF_GHOST_COPY;
+  return own_axis ? CF_GHOST_ODD : CF_GHOST_MIRROR;
+}
+
+/* Component c of a flux. Where its own axis wraps, the last layer of faces is the image of the first. */
+static moved component_of(const cf_advect *a, const cf_walls *walls, const int c, const cf_face q) {
+  const cf_box *b = &a->grid->box;
+  moved m = {.component = c, .at = q.at[c]};
+  for (int axis = 0; axis < 3; ++axis) {
+    m.count[axis] = b->n[axis] + (axis == c && !a->wrap[axis] ? 1 : 0);
+    for (int side = 0; side < 2; ++side)
+      m.ghost[axis][side] = ghost_of_faces(walls->kind[axis][side], axis == c);
+  }
+  return m;
+}
+
+/* Half of the stretch before the sweeps and half after them: second order. Midpoint rule for each. */
+static void stretch(cf_advect *a, const cf_walls *walls, const double dt, const cf_face q) {
+  cf_stretch(a->grid, walls, a->u, dt / 2, q, q, a->turned);
+  cf_stretch(a->grid, walls, a->u, dt, a->turned, q, q);
+}
+
+static void carry_component(cf_advect *a, const moved *m, const int substep) {
+  if (a->scheme == CF_ADVECT_LINEAR)
+    trace(a, m);
+  else
+    carry(a, m, substep, NULL);
+  if (!a->wrap[m->component]) return;
+  cf_halo image = {0};
+  image.rule[m->component][0] = image.rule[m->component][1] = CF_HALO_WRAP;
+  cf_halo_fill(&a->grid->box, &image, 0, m->component, m->at);
+}
+
+cf_status cf_advect_face(cf_advect *a, const cf_walls *walls, const cf_flux_rate rate, const cf_face q) {
+  CF_TRY(check_walls(a, walls));
+  const bool stretched = rate == CF_RATE_OBJECTIVE;
+  cf_stretch_close(a->grid, walls, q);
+  for (int substep = 0; substep < a->substeps; ++substep) {
+    if (stretched) stretch(a, walls, substep == 0 ? a->dt / 2 : a->dt, q);
+    for (int c = 0; c < a->grid->box.dim; ++c) {
+      moved m = component_of(a, walls, c, q);
+      m.mass = rate != CF_RATE_MATERIAL;
+      carry_component(a, &m, substep);
+    }
+  }
+  if (stretched) stretch(a, walls, a->dt / 2, q);
+  return CF_OK;
+}

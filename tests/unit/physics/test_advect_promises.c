@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What advection promises for one step: constants, sums, bounds, linearity, walls.
+ */
+/* also in single precision */
+#include "advect_flows.h"
+
+#define EPS ((double)CF_REAL_EPSILON)
+
+static const int flat[3] = {48, 40, 1}, solid[3] = {20, 18, 16};
+
+static double one(const double x[3]) {
+  (void)x;
+  return 0.7;
+}
+
+static void set_noise(scene *s, const int64_t stream, const int bits) {
+  const cf_box *b = &s->grid.box;
+  for (int k = 0; k < b->n[2]; ++k)
+    for (int j = 0; j < b->n[1]; ++j)
+      for (int i = 0; i < b->n[0]; ++i) {
+        const double v = noise((k * 1009 + j) * 1009 + i, stream);
+        s->phi.at[cf_box_at(b, i, j, k)] = (cf_real)(bits ? (v < 0.5 ? 0 : 1) : v);
+      }
+}
+
+static void constants_stay(const int dim, const int *cells, const cf_wall kind) {
+  scene s;
+  scene_open(&s, dim, cells, walls_all(kind));
+  set_cells(&s, one);
+  for (int step = 0; step < 20; ++step) {
+    set_random_flow(&s, step, kind == CF_WALL_INSULATED);
+    OK(cf_advect_set_velocity(s.advect, s.u, &s.walls));
+    move_cells(&s, 0, step_of(&s, 0.9), NULL);
+  }
+  const cf_range r = range_of(&s);
+  assert_true(fabs(r.min - 0.7) < 40 * EPS);
+  assert_true(fabs(r.max - 0.7) < 40 * EPS);
+  scene_close(&s);
+}
+
+static void advect_keeps_constants(void **state) {
+  (void)state;
+  constants_stay(2, flat, CF_WALL_PERIODIC);
+  constants_stay(2, flat, CF_WALL_INSULATED);
+  constants_stay(3, solid, CF_WALL_PERIODIC);
+  constants_stay(3, solid, CF_WALL_INSULATED);
+}
+
+static void bounds_hold(const int dim, const int *cells, const cf_wall kind, const double k) {
+  scene s;
+  scene_open(&s, dim, cells, walls_all(kind));
+  for (int step = 0; step < 40; ++step) {
+    set_random_flow(&s, 100 + step, kind == CF_WALL_INSULATED);
+    if (step % 8 == 0) set_noise(&s, step, 1);
+    const double before = range_of(&s).sum;
+    OK(cf_advect_set_velocity(s.advect, s.u, &s.walls));
+    move_cells(&s, 0, step_of(&s, k), NULL);
+    const cf_range r = range_of(&s);
+    assert_true(r.min > -8 * EPS);
+    assert_true(r.max < 1 + 8 * EPS);
+    if (kind != CF_WALL_OPEN) assert_true(fabs(r.sum - before) < 4 * EPS * before);
+  }
+  scene_close(&s);
+}
+
+static void advect_keeps_bounds_and_the_sum_of_random_bits(void **state) {
+  (void)state;
+  const double ks[3] = {0.25, 0.5, 0.9};
+  for (int i = 0; i < 3; ++i) {
+    bounds_hold(2, flat, CF_WALL_PERIODIC, ks[i]);
+    bounds_hold(2, flat, CF_WALL_INSULATED, ks[i]);
+    bounds_hold(2, flat, CF_WALL_OPEN, ks[i]);
+    bounds_hold(3, solid, CF_WALL_PERIODIC, ks[i]);
+    bounds_hold(3, solid, CF_WALL_INSULATED, ks[i]);
+    bounds_hold(3, solid, CF_WALL_OPEN, ks[i]);
+  }
+}
+
+static void advect_divides_long_steps(void **state) {
+  (void)state;
+  bounds_hold(2, flat, CF_WALL_PERIODIC, 3.3);
+  scene s;
+  scene_open(&s, 2, flat, walls_all(CF_WALL_PERIODIC));
+  set_random_flow(&s, 1, 0);
+  OK(cf_advect_set_velocity(s.advect, s.u, &s.walls));
+  assert_true(cf_advect_substeps(s.advect, step_of(&s, 0.899)) == 1);
+  assert_true(cf_advect_substeps(s.advect, step_of(&s, 0.91)) == 2);
+  OK(cf_advect_begin(s.advect, 0, step_of(&s, 2.5)));
+  assert_int_equal(*cf_advect_parity(s.advect), 3);
+  assert_int_equal(cf_advect_begin(s.advect, 0, step_of(&s, 1e7)), CF_OVER_LIMIT);
+  scene_close(&s);
+}
+
+static void linear(const int dim, const int *cells) {
+  scene s;
+  cf_cell f;
+  scene_open(&s, dim, cells, walls_all(CF_WALL_PERIODIC));
+  const cf_box *b = &s.grid.box;
+  OK(cf_cell_create(&f, b));
+  set_random_flow(&s, 7, 0);
+  OK(cf_advect_set_velocity(s.advect, s.u, &s.walls));
+  set_noise(&s, 3, 0);
+  const cf_real a = (cf_real)-2.5, c = (cf_real)0.375;
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
+    for (int i = 0; i < b->n[0]; ++i) f.at[cf_box_row(b, r) + i] = a * s.phi.at[cf_box_row(b, r) + i] + c;
+  OK(cf_advect_begin(s.advect, 0, step_of(&s, 0.9)));
+  OK(cf_advect_cell(s.advect, &s.walls, s.phi, NULL));
+  OK(cf_advect_cell(s.advect, &s.walls, f, NULL));
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
+    for (int i = 0; i < b->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(b, r) + i;
+      assert_true(fabs((double)(f.at[p] - (a * s.phi.at[p] + c))) < 40 * EPS);
+    }
+  cf_cell_destroy(&f, b);
+  scene_close(&s);
+}
+
+static void advect_is_linear_in_a_f_plus_b(void **state) {
+  (void)state;
+  linear(2, flat);
+  linear(3, solid);
+}
+
+static void through_walls(const int dim, const int *cells, const cf_wall kind) {
+  scene s;
+  scene_open(&s, dim, cells, walls_all(kind));
+  for (int a = 0; a < 3; ++a)
+    for (int side = 0; side < 2; ++side) s.walls.value[a][side] = cf_fn_constant(0.5 + 0.1 * a + 0.05 * side);
+  set_noise(&s, 5, 1);
+  const double first = range_of(&s).sum * cf_grid_volume(&s.grid);
+  cf_through through = {0, 0};
+  for (int step = 0; step < 30; ++step) {
+    set_random_flow(&s, 200 + step, 0);
+    OK(cf_advect_set_velocity(s.advect, s.u, &s.walls));
+    move_cells(&s, 0, step_of(&s, 1.7), &through);
+  }
+  const double last = range_of(&s).sum * cf_grid_volume(&s.grid);
+  assert_true(through.left > 0.1 * first);
+  assert_true(kind == CF_WALL_OPEN ? through.entered == 0 : through.entered > 0.1 * first);
+  const double all = fabs(first) + through.entered + through.left;
+  assert_true(fabs(last + through.left - through.entered - first) < 50 * EPS * all);
+  const cf_range r = range_of(&s);
+  assert_true(r.min > -8 * EPS && r.max < 1 + 8 * EPS);
+  scene_close(&s);
+}
+
+static void advect_balances_what_passes_through_walls(void **state) {
+  (void)state;
+  through_walls(2, flat, CF_WALL_OPEN);
+  through_walls(2, flat, CF_WALL_VALUE);
+  through_walls(3, solid, CF_WALL_OPEN);
+  through_walls(3, solid, CF_WALL_VALUE);
+  through_walls(3, solid, CF_WALL_RADIATE);
+}
+
+static void wave(const void *context, const int n, const double *x, const double *y, const double *z,
+                 const double t, double *out) {
+  (void)context, (void)x, (void)z;
+  for (int i = 0; i < n; ++i) out[i] = 2 + sin(6 * t) + y[i];
+}
+
+static double incoming(const double x[3]) { return 2 + sin(6 * (0.8 - x[0])) + x[1]; }
+
+/* With u = (1, 0) what stands at x at t = 0.8 came in at t - x. */
+static double inflow_error(const int n) {
+  const int cells[2] = {n, n};
+  scene s;
+  scene_open(&s, 2, cells, walls_all(CF_WALL_INSULATED));
+  s.walls.kind[0][0] = CF_WALL_VALUE;
+  s.walls.value[0][0] = (cf_fn){.eval = wave, .in_time = true};
+  s.walls.kind[0][1] = CF_WALL_OPEN;
+  const cf_box *b = &s.grid.box;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i <= n; ++i) s.u.at[0][cf_box_at(b, i, j, 0)] = 1;
+  set_cells(&s, incoming); /* right at once where the wave is not yet due */
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      s.phi.at[cf_box_at(b, i, j, 0)] = (cf_real)(2 + sin(-6 * (i + 0.5) * s.grid.h) + (j + 0.5) * s.grid.h);
+  OK(cf_advect_set_velocity(s.advect, s.u, &s.walls));
+  const int steps = n; /* K = 0.8 */
+  for (int step = 0; step < steps; ++step) move_cells(&s, step * 0.8 / steps, 0.8 / steps, NULL);
+  const double error = error_against(&s, incoming);
+  scene_close(&s);
+  return error;
+}
+
+static void advect_lets_in_what_the_wall_says_at_the_time(void **state) {
+  (void)state;
+  const double coarse = inflow_error(32), fine = inflow_error(64);
+  print_message("inflow: %.2e %.2e\n", coarse, fine);
+  assert_true(fine < 2e-3);
+  assert_true(coarse / fine > 2.8);
+}
+
+static void advect_refuses_what_it_cannot_do(void **state) {
+  (void)state;
+  scene s;
+  scene_open(&s, 2, flat, walls_all(CF_WALL_PERIODIC));
+  set_random_flow(&s, 7, 0);
+  s.u.at[1][cf_box_at(&s.grid.box, 3, 4, 0)] = (cf_real)NAN;
+  assert_int_equal(cf_advect_set_velocity(s.advect, s.u, &s.walls), CF_NOT_FINITE);
+  assert_non_null(strstr(cf_status_sentence(), "along y"));
+  assert_non_null(strstr(cf_status_sentence(), "(3, 4, 0)"));
+  set_random_flow(&s, 7, 0);
+  OK(cf_advect_set_velocity(s.advect, s.u, &s.walls));
+  OK(cf_advect_begin(s.advect, 0, 1e-3));
+  const cf_walls closed = walls_all(CF_WALL_INSULATED);
+  assert_int_equal(cf_advect_cell(s.advect, &closed, s.phi, NULL), CF_BAD_ARGUMENT);
+  scene_close(&s);
+}
+
+static void advect_frees_what_it_took_when_memory_runs_out(void **state) {
+  (void)state;
+  cf_grid g;
+  OK(cf_grid_init(&g, 3, solid, 0.1, NULL));
+  int tries = 0;
+  for (long n = 1;; ++n, ++tries) {
+    cf_advect *a;
+    cf_mem_fail_at(n);
+    const cf_status s = cf_advect_create(&a, &g, CF_ADVECT_PPM);
+    cf_mem_fail_at(0);
+    if (s == CF_OK) {
+      cf_advect_destroy(a);
+      break;
+    }
+    assert_int_equal(s, CF_NO_MEMORY);
+    assert_null(a);
+  }
+  assert_true(tries >= 13);
+  cf_advect_destroy(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(advect_keeps_constants),
+      cmocka_unit_test(advect_keeps_bounds_and_the_sum_of_random_bits),
+      cmocka_unit_test(advect_divides_long_steps),
+      cmocka_unit_test(advect_is_linear_in_a_f_plus_b),
+      cmocka_unit_test(advect_balances_what_passes_through_walls),
+      cmocka_unit_test(advect_lets_in_what_the_wall_says_at_the_time),
+      cmocka_unit_test(advect_refuses_what_it_cannot_do),
+      cmocka_unit_test(advect_frees_what_it_took_when_memory_runs_out),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
