@@ -41,11 +41,14 @@ static bool is_blank(const char *text) { return text[strspn(text, " \t")] == '\0
 
 static ut_unit *parse(const char *text) {
   char trimmed[UNIT_MAX];
-  const size_t length = strlen(text);
-  if (length >= UNIT_MAX || has_broken_power(text)) return NULL;
+  if (strlen(text) >= UNIT_MAX || has_broken_power(text)) return NULL;
   if (is_blank(text)) return ut_get_dimensionless_unit_one(database);
-  memcpy(trimmed, text, length + 1);
-  return ut_parse(database, ut_trim(trimmed, UT_UTF8), UT_UTF8);
+  const char *start = text + strspn(text, " \t");
+  size_t count = strlen(start);
+  while (strchr(" \t", start[count - 1]) != NULL) --count; /* blanks around a unit change its meaning */
+  memcpy(trimmed, start, count);
+  trimmed[count] = '\0';
+  return ut_parse(database, trimmed, UT_UTF8);
 }
 
 static bool same_dimension(const ut_unit *given, const ut_unit *wanted) {

@@ -2,12 +2,12 @@
  *
  * Expressions by muParser through its C interface; see expr.h.
  *
- * What that library does by itself and what is done about it here: it has _pi, wrong in the 13th digit
- * (cleared; pi is defined from M_PI); it takes `x = 3` for an assignment and `1, 2` for two values (both
- * refused); it finds errors only when it evaluates (done once at creation); its messages stand in one static
- * buffer (copied at once, and creation is behind a lock); its bulk mode changes the number of OpenMP threads
- * of the caller (not used: one call a point costs the same). Names are looked up here first, so that unknown
- * ones are reported with their place.
+ * What that library does by itself and what is done about it here: it has _pi, wrong in the 13th digit (cleared;
+ * pi is defined from M_PI); it takes `x = 3` for an assignment and `1, 2` for two values (both refused); it finds
+ * errors only when it evaluates (done once at creation); its messages go into one static buffer of 2048 bytes,
+ * unchecked (so texts are shorter, and only codes and tokens are asked for, behind a lock); its bulk mode changes
+ * the number of OpenMP threads of the caller (not used: one call a point costs the same). Names are looked up here
+ * first, so that unknown ones are reported with their place.
  *
  * A parser keeps its variables inside. Threads that evaluate one expression at the same time get one parser
  * each, made at need and kept.
@@ -26,7 +26,7 @@
 #include "base/param.h"
 #include "base/real.h"
 
-enum { NAME_MAX_LENGTH = 63, TEXT_MAX = 4000, NEST_MAX = 200 };
+enum { NAME_MAX_LENGTH = 63, TEXT_MAX = 2000, NEST_MAX = 200 };
 
 static const char variable_names[4] = {'x', 'y', 'z', 't'};
 
@@ -286,29 +286,32 @@ static cf_status parser_create(cf_parser **parser, const cf_expr *expr) {
   return cf_fail(CF_NO_MEMORY, "no memory for an expression");
 }
 
-/* What the library found wrong, in our words where its own say little. */
-static cf_status syntax_error(cf_parser *parser, const char *text, cf_expr_place *place) {
-  char message[200], token[80];
-  const int at = mupGetErrorPos(parser->handle);
-  snprintf(message, sizeof message, "%s", mupGetErrorMsg(parser->handle));
-  snprintf(token, sizeof token, "%s", mupGetErrorToken(parser->handle));
-  mupErrorReset(parser->handle);
-  token[strcspn(token, " ")] = '\0';
-  const ptrdiff_t length = (ptrdiff_t)strlen(text), token_length = (ptrdiff_t)strlen(token);
-  const bool inside = at >= 0 && at < length;
-  if (strstr(message, "end of expression") != NULL)
+/* What the library found wrong, in our words: its codes (see its error list) and the token it stopped at. */
+static void say_error(const int code, const char *token) {
+  enum { ENDS = 2, TOO_MANY = 14, TOO_FEW = 15, NO_ELSE = 33, LOST_COLON = 34 };
+  if (code == ENDS)
     cf_fail(CF_BAD_ARGUMENT, "the expression ends too early");
-  else if (strstr(message, "arguments") != NULL || strstr(message, "parameters") != NULL)
+  else if (code == TOO_MANY || code == TOO_FEW)
     cf_fail(CF_BAD_ARGUMENT, "the function has the wrong number of arguments");
-  else if (strstr(message, "if-then-else") != NULL || strstr(message, "colon") != NULL)
+  else if (code == NO_ELSE || code == LOST_COLON)
     cf_fail(CF_BAD_ARGUMENT, "a choice is written condition ? this : that");
-  else if (token_length > 0)
+  else if (token[0] != '\0')
     cf_fail(CF_BAD_ARGUMENT, "`%s` may not stand here", token);
   else
     cf_fail(CF_BAD_ARGUMENT, "this is not an expression");
-  const ptrdiff_t start = inside ? at : CF_MAX(length - 1, 0);
-  const bool token_there = inside && strncmp(text + at, token, (size_t)token_length) == 0;
-  return fail_in(place, start, token_there && token_length > 0 ? token_length : 1);
+}
+
+static cf_status syntax_error(cf_parser *parser, const char *text, cf_expr_place *place) {
+  char token[80];
+  const int at = mupGetErrorPos(parser->handle), code = mupGetErrorCode(parser->handle);
+  snprintf(token, sizeof token, "%s", mupGetErrorToken(parser->handle));
+  mupErrorReset(parser->handle);
+  token[strcspn(token, " ")] = '\0';
+  say_error(code, token);
+  const ptrdiff_t length = (ptrdiff_t)strlen(text), token_length = (ptrdiff_t)strlen(token);
+  const bool inside = at >= 0 && at < length;
+  const bool there = inside && token_length > 0 && strncmp(text + at, token, (size_t)token_length) == 0;
+  return fail_in(place, inside ? at : CF_MAX(length - 1, 0), there ? token_length : 1);
 }
 
 /* Evaluates once, which is when the library finds its errors. */
