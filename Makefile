@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+#
+# The short way in: `make demo` and `make test` on a fresh Debian 12 machine. Everything is built by CMake
+# (CMakeLists.txt, CMakePresets.json); these words only call it.
+#
+#   make            installs what is missing, builds build/bin/cattaneo (double) and build/bin/cattaneof (single)
+#   make demo       the same, then runs the main example and says where its pictures and data are (under out/)
+#   make test       the same, then every test but the long ones
+#   make test-long  every test
+#   make format     puts the C files into the project's form (clang-format)
+#   make lint       what can be said about the sources without running them
+#   make clean      removes build/
+#
+# Another build folder: make BUILD=elsewhere test
+
+BUILD ?= build
+JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
+CTEST  = ctest --test-dir $(BUILD) --output-on-failure -j$(JOBS)
+
+.PHONY: all demo test test-long format lint clean setup setup-tests configure programs
+
+all: programs
+
+# --- set-up and build -------------------------------------------------------------------------------------
+
+setup:
+	@tools/setup.sh build
+
+setup-tests:
+	@tools/setup.sh build test
+
+# Ninja where there is a choice; a folder that was configured before keeps what it has.
+configure:
+	@test -e $(BUILD)/build.ninja || test -e $(BUILD)/Makefile || cmake -S . -B $(BUILD) -G Ninja
+
+programs: setup
+	@$(MAKE) --no-print-directory configure
+	@cmake --build $(BUILD) --parallel $(JOBS) --target product
+
+# --- words that run something -----------------------------------------------------------------------------
+
+demo: programs
+	@CATTANEO=$(abspath $(BUILD))/bin/cattaneo examples/cone/demo.sh
+
+test: setup-tests
+	@$(MAKE) --no-print-directory configure
+	@cmake --build $(BUILD) --parallel $(JOBS)
+	@$(CTEST) --label-exclude long
+
+test-long: setup-tests
+	@$(MAKE) --no-print-directory configure
+	@cmake --build $(BUILD) --parallel $(JOBS)
+	@$(CTEST)
+
+# --- sources ----------------------------------------------------------------------------------------------
+
+SOURCES = $(wildcard src/*/*.[ch] include/*.h tests/*/*.[ch] tests/*/*/*.[ch] examples/c/*.c)
+
+format:
+	@clang-format -i $(SOURCES)
+
+lint:
+	@tools/floors.py
+	@clang-format --dry-run -Werror $(SOURCES)
+	@echo "lint: nothing to say"
+
+clean:
+	@rm -rf $(BUILD)

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The table of commands.
+ */
+#include <string.h>
+
+#include "app/command.h"
+#include "base/param.h"
+
+#define BIT(option) (1u << CF_OPTION_##option)
+
+const cf_command cf_commands[] = {
+    {"run", "SCENE.yaml", 1, 1,
+     BIT(OUTPUT) | BIT(SET) | BIT(THREADS) | BIT(UNTIL) | BIT(STEPS) | BIT(PRECISION) | BIT(PROGRESS) |
+         BIT(MEM_LIMIT) | BIT(FORCE) | BIT(HELP),
+     "run a scene; write its pictures and data into a folder",
+     "The folder gets run.yaml (the scene with every default filled in), metrics.csv (a line a step), a file "
+     "and "
+     "a picture a frame, checkpoints, and log.txt. Its name is printed on stdout. A folder that holds a run "
+     "is "
+     "left alone unless --force is given.\n"
+     "Ctrl-C, or a TERM or HUP signal, ends the run after the present step with a checkpoint; `resume` goes "
+     "on "
+     "from there as if nothing had been.\n"
+     "  " CF_PROGRAM " run cone.yaml -o out/tau2 --set diffusion.tau=2",
+     cf_run_command},
+    {"resume", "DIR", 1, 1, BIT(UNTIL) | BIT(THREADS) | BIT(PROGRESS) | BIT(HELP),
+     "go on with a run that was stopped, from its newest good checkpoint",
+     "What was written after the checkpoint is cut and written again, to the same bits. Without a checkpoint "
+     "the "
+     "run starts again from its run.yaml. A run that is finished is left as it is.\n"
+     "  " CF_PROGRAM " resume out/cone",
+     cf_resume_command},
+    {"check", "SCENE.yaml", 1, 1, BIT(SET) | BIT(HELP),
+     "say everything about a scene that can be said before it runs",
+     "Grid, memory, frames and steps; for every scalar its front speed, H_c, cone angle, band of waves, and "
+     "how "
+     "the step compares with tau; and warnings where a choice looks unlucky. Nothing is written.\n"
+     "  " CF_PROGRAM " check cone.yaml --set time.dt=0.1",
+     cf_check_command},
+    {"explain", "[KEY]", 0, 1, BIT(HELP), "explain a key of the scene file, or all of them",
+     "Type, unit, default, range, and what the key means.\n"
+     "  " CF_PROGRAM " explain diffusion.tau",
+     cf_explain_command},
+    {"examples", "[NAME]", 0, 1, BIT(FORCE) | BIT(HELP), "list the examples, or copy one to a file to edit",
+     "The copy is NAME.yaml in the present folder; a file that is there already is left alone unless --force "
+     "is "
+     "given.\n"
+     "  " CF_PROGRAM " examples cone",
+     cf_examples_command},
+    {"info", "FILE|DIR", 1, 1, BIT(HELP), "what a frame, a checkpoint or the folder of a run contains",
+     "Scene, version and times; of every field the least and largest value, the sum and a checksum. Equal "
+     "checksums, equal bits.\n"
+     "  " CF_PROGRAM " info out/cone",
+     cf_info_command},
+    {"help", "[COMMAND]", 0, 1, BIT(MANUAL) | BIT(HELP), "what the program or one command does", "",
+     cf_help_command},
+    {.name = NULL},
+};
+
+const cf_command *cf_command_find(const char *name) {
+  for (const cf_command *c = cf_commands; c->name != NULL; ++c)
+    if (strcmp(c->name, name) == 0) return c;
+  return NULL;
+}
+
+cf_status cf_command_unknown(const char *name) {
+  const char *best = NULL;
+  int least = -1;
+  for (const cf_command *c = cf_commands; c->name != NULL; ++c) {
+    const int distance = cf_param_distance(name, c->name);
+    if (distance < 0 || (best != NULL && distance >= least)) continue;
+    best = c->name;
+    least = distance;
+  }
+  if (best != NULL) return cf_fail(CF_BAD_USAGE, "there is no command %.64s: did you mean %s?", name, best);
+  const char *dot = strrchr(name, '.');
+  if (dot != NULL && strcmp(dot, ".yaml") == 0)
+    return cf_fail(CF_BAD_USAGE, "there is no command %.256s: did you mean `" CF_PROGRAM " run %.256s`?",
+                   name, name);
+  return cf_fail(CF_BAD_USAGE, "there is no command %.64s", name);
+}

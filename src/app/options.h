@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The options of the program, each once: the row below gives the parser its name, the help and the manual page
+ * their line, and "did you mean" its candidates. A command names those it takes (app/command.h).
+ *
+ * Numbers are checked here as far as they can be without a scene.
+ */
+#ifndef CF_APP_OPTIONS_H
+#define CF_APP_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+/* O(UPPER, long name, letter or 0, value or NULL for a flag, meaning) */
+/* clang-format off */
+#define CF_OPTION_LIST(O)                                                                                     \
+  O(OUTPUT, "output", 'o', "DIR", "the folder to write; left out: out/<name of the scene file>")              \
+  O(SET, "set", 0, "KEY=VALUE", "goes before what the scene says, for example diffusion.tau=2; may be repeated") \
+  O(THREADS, "threads", 0, "N", "threads to use; left out: one a processor; the results are the same bits")   \
+  O(UNTIL, "until", 0, "T", "stop at this simulated time, in s")                                              \
+  O(STEPS, "steps", 0, "N", "stop after so many steps")                                                       \
+  O(PRECISION, "precision", 0, "single|double", "the precision of the fields; the sister program runs if need be") \
+  O(PROGRESS, "progress", 0, "auto|plain|json|none",                                                          \
+    "how progress is shown on stderr: auto is one line that is rewritten on a terminal and plain elsewhere; " \
+    "json is one object a line")                                                                              \
+  O(MEM_LIMIT, "mem-limit", 0, "SIZE", "refuse a run that may need more memory: 512M, 2G (powers of 1024)")   \
+  O(FORCE, "force", 0, NULL, "overwrite what is there")                                                       \
+  O(MANUAL, "manual", 0, NULL, "print the manual page, for man(1)")                                           \
+  O(HELP, "help", 'h', NULL, "what the command does and takes")
+/* clang-format on */
+
+enum {
+#define CF_OPTION_ENUM(upper, name, letter, value, doc) CF_OPTION_##upper,
+  CF_OPTION_LIST(CF_OPTION_ENUM)
+#undef CF_OPTION_ENUM
+      CF_OPTIONS
+};
+
+typedef struct cf_option {
+  const char *name;
+  char letter;
+  const char *value, *doc;
+} cf_option;
+extern const cf_option cf_option_table[CF_OPTIONS];
+
+typedef enum cf_progress_kind {
+  CF_PROGRESS_AUTO,
+  CF_PROGRESS_PLAIN,
+  CF_PROGRESS_JSON,
+  CF_PROGRESS_NONE
+} cf_progress_kind;
+
+/* What a command was called with. Texts belong to the caller of cf_arguments_read. */
+typedef struct cf_arguments {
+  int operands;
+  char **operand;
+  const char *output;
+  int sets;
+  const char **set;
+  int threads;   /* 0: not given */
+  double until;  /* s; 0: not given */
+  int64_t steps; /* 0: not given */
+  double memory; /* bytes; 0: not given */
+  bool other;    /* the other precision than this program's is asked for */
+  bool force, manual, help;
+  cf_progress_kind progress;
+  char **argv; /* of the whole program */
+  bool told;   /* the command has said itself why it failed */
+} cf_arguments;
+
+/* Reads what follows the name of a command: argv[0] is that name, `allowed` the bits 1 << CF_OPTION_... that
+ * it takes. Operands are moved behind the options. CF_BAD_USAGE. */
+cf_status cf_arguments_read(cf_arguments *a, int argc, char **argv, unsigned allowed);
+void cf_arguments_clear(cf_arguments *a);
+
+/* "512M" in bytes. CF_BAD_USAGE. */
+cf_status cf_size_read(const char *text, double *bytes);
+
+#endif
