@@ -2,12 +2,12 @@
  *
  * Expressions by muParser through its C interface; see expr.h.
  *
- * What that library does by itself and what is done about it here: it has _pi, wrong in the 13th digit (cleared;
- * pi is defined from M_PI); it takes `x = 3` for an assignment and `1, 2` for two values (both refused); it finds
- * errors only when it evaluates (done once at creation); its messages go into one static buffer of 2048 bytes,
- * unchecked (so texts are shorter, and only codes and tokens are asked for, behind a lock); its bulk mode changes
- * the number of OpenMP threads of the caller (not used: one call a point costs the same). Names are looked up here
- * first, so that unknown ones are reported with their place.
+ * What that library does by itself and what is done about it here: its _pi is wrong in the 13th digit (pi is
+ * defined from M_PI, and no other name gets through); it takes `x = 3` for an assignment and `1, 2` for two values
+ * (both refused); it finds errors only when it evaluates (done once at creation); its messages go into one static
+ * buffer of 2048 bytes, unchecked (so texts are shorter, and only codes and tokens are asked for, behind a lock);
+ * its bulk mode changes the number of OpenMP threads of the caller (not used: one call a point costs the same).
+ * Names are looked up here first, so that unknown ones are reported with their place.
  *
  * A parser keeps its variables inside. Threads that evaluate one expression at the same time get one parser
  * each, made at need and kept.
@@ -250,7 +250,6 @@ static cf_status check_text(const char *text, const cf_expr_constants *constants
 
 static void define_all(const cf_expr *expr, cf_parser *parser) {
   const muParserHandle_t handle = parser->handle;
-  mupClearConst(handle);
   mupDefineConst(handle, "pi", M_PI);
   for (int i = 0; i < expr->constants; ++i) mupDefineConst(handle, expr->name[i], expr->value[i]);
   for (int i = 0; i < 4; ++i) {

@@ -123,7 +123,7 @@ static cf_status unit_change(const cf_reader *reader, const cf_node *node, const
   return cf_reader_fail(reader, node, "%s %s", reader->path, cf_status_sentence());
 }
 
-static cf_status finite(const cf_reader *reader, const cf_node *node, const double value) {
+static cf_status check_finite(const cf_reader *reader, const cf_node *node, const double value) {
   if (isfinite(value)) return CF_OK;
   return cf_reader_fail(reader, node, "%s = %.80s: is not a finite number", reader->path, node->text);
 }
@@ -136,7 +136,7 @@ cf_status cf_value_quantity(cf_reader *reader, const cf_node *node, const char *
   cf_expr_destroy(quantity.expr);
   CF_TRY(unit_change(reader, node, quantity.unit, unit, &change));
   *value = number * change.scale + change.offset;
-  return finite(reader, node, *value);
+  return check_finite(reader, node, *value);
 }
 
 static cf_status in_range(const cf_reader *reader, const cf_param *param, const cf_node *node,
@@ -170,7 +170,7 @@ static cf_status finish_function(cf_reader *reader, const cf_param *param, const
   CF_TRY(unit_change(reader, node, quantity->unit, param->unit, &change));
   if (cf_fn_is_constant(&made)) {
     *fn = cf_fn_constant(made.value * change.scale + change.offset);
-    CF_TRY(finite(reader, node, fn->value));
+    CF_TRY(check_finite(reader, node, fn->value));
     return in_range(reader, param, node, fn->value);
   }
   if (quantity->unit != NULL) CF_TRY(scale_expression(reader, variables, &change, quantity));

@@ -267,10 +267,12 @@ static void scene_override_goes_before_the_file(void **state) {
 
 static void scene_last_override_counts(void **state) {
   (void)state;
-  const char *const set[] = {"diffusion={tau: 1, k: 3}", "diffusion.tau=2", "diffusion.tau=5"};
-  cf_scene *s = read_set(HEAD BOX TIME, 3, set);
-  CLOSE(s->diffusion.tau, 5, 0);
+  const char *const set[] = {"time={end: 2}",   "diffusion={tau: 1, k: 3}", "diffusion.tau=2",
+                             "diffusion.tau=5", "diffusion={k: 3, tau: 6}", "title=z"};
+  cf_scene *s = read_set(HEAD BOX TIME, 6, set);
+  CLOSE(s->diffusion.tau, 6, 0);
   CLOSE(at(&s->diffusion.k, 0, 0), 3, 0);
+  assert_string_equal(s->title, "z");
   cf_scene_destroy(s);
 }
 
