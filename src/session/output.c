@@ -9,6 +9,7 @@
 #include "io/frame.h"
 #include "io/image.h"
 #include "io/npy.h"
+#include "render/colormap.h"
 #include "render/preview.h"
 #include "session/overlay.h"
 

@@ -193,7 +193,7 @@ static cf_status start(cf_session *s, const char *scene, const int overrides, co
 /* The state of the newest checkpoint, or that of time 0. */
 static cf_status restore(cf_session *s) {
   cf_checkpoint_found newest;
-  char line[CF_SENTENCE_MAX + 128];
+  char line[2 * CF_SENTENCE_MAX + 128];
   CF_TRY(cf_checkpoint_newest(s->folder.path.text, &newest));
   if (newest.passed_over[0] != '\0') {
     snprintf(line, sizeof line, "passed over: %s", newest.passed_over);
@@ -301,7 +301,7 @@ static bool report(const cf_session *s, const bool finished) {
 
 static void tell_warnings(cf_session *s) {
   const cf_step_report *r = &s->sim->report;
-  char line[512];
+  char line[CF_SENTENCE_MAX];
   if (r->warning[0] != '\0' && !s->warned) {
     s->warned = true;
     snprintf(line, sizeof line, "warning: %s", r->warning);
@@ -348,7 +348,7 @@ static bool reached(const cf_session *s) {
 }
 
 cf_status cf_session_run(cf_session *s) {
-  char line[512];
+  char line[CF_PATH_MAX + 256];
   if (s->was_finished) return CF_OK;
   while (!reached(s)) {
     const cf_status status = one_step(s);
