@@ -3,11 +3,13 @@
  * A picture of one cell field: the field in colours, axes in metres, a colour bar with round numbers, title,
  * time, and lines drawn over it. In 3D a slice through the middle, or the mean along an axis.
  *
- * The range of the colours: low..high where low < high; otherwise it is taken from the field. Then it ends at
- * the 0.1 % and 99.9 % quantiles (a single hot cell does not darken all the rest; the colour bar ends in
- * points where values lie beyond), and values of both signs, min < -0.05 max: -m..m with the larger bound on
- * both sides, and the map `balance` otherwise: 0..max if 0 <= min < max/2, else min..max, and the map
- * `ember`. For a movie give low and high, else the colours change their meaning from frame to frame.
+ * The range of the colours: low..high where low < high; otherwise it is taken from what is shown. Then it ends at the
+ * 0.5 % and 99.5 % quantiles (a few hot cells do not darken all the rest; the colour bar ends in points where values
+ * lie beyond), and
+ *     values of both signs, each beyond 5 % of the other: -m..m with the larger bound m, and the map `balance`
+ *     otherwise: min..max, from or to 0 if min < max / 2 (if max > min / 2 below 0), and the map `ember`
+ * The middle of a signed map is 0 also where low and high are given and differ.
+ * For a movie give low and high, else the colours change their meaning from frame to frame.
  */
 #ifndef CF_RENDER_PREVIEW_H
 #define CF_RENDER_PREVIEW_H

@@ -18,7 +18,7 @@ typedef struct cf_lettering {
   double weight; /* stroke width over the usual one; 0: 1 */
   double align;  /* 0: starts at the point, 0.5: centred, 1: ends there */
   int upward;    /* 1: reads from bottom to top */
-  int outline;   /* 1: a light rim around the letters, for text on a picture */
+  int outline;   /* 1: a rim around the letters, light or dark as suits, for text on a picture */
 } cf_lettering;
 
 /* The baseline starts (or is centred, or ends) at (x, y). CF_NO_MEMORY. */

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: MIT */
+#include "render/plane.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/real.h"
+
+/* --- the plane ------------------------------------------------------------------------------------------------ */
+
+static double value_at(const cf_plane *p, const cf_box *b, const cf_real *f, const int i, const int j,
+                       const int from, const int to) {
+  ptrdiff_t at = i * b->stride[p->axis[0]] + j * b->stride[p->axis[1]];
+  double sum = 0;
+  if (p->along < 0) return (double)f[at];
+  at += from * b->stride[p->along];
+  for (int k = from; k < to; ++k, at += b->stride[p->along]) sum += (double)f[at];
+  return sum / (to - from);
+}
+
+cf_status cf_plane_create(cf_plane *p, const cf_grid *g, const cf_real *f, const cf_preview *how) {
+  const cf_box *b = &g->box;
+  const int along = b->dim == 2 ? -1 : how->axis >= 0 && how->axis < 3 ? how->axis : 2;
+  *p = (cf_plane){.along = along, .h = g->h};
+  for (int a = 0, shown = 0; a < b->dim; ++a)
+    if (a != along) p->axis[shown++] = a;
+  for (int s = 0; s < 2; ++s) {
+    p->n[s] = b->n[p->axis[s]];
+    p->low[s] = g->origin[p->axis[s]];
+  }
+  int from = 0, to = 1;
+  if (along >= 0) {
+    from = how->view == CF_VIEW_MEAN ? 0 : (b->n[along] - 1) / 2;
+    to = how->view == CF_VIEW_MEAN ? b->n[along] : b->n[along] / 2 + 1;
+    p->middle = g->origin[along] + g->h * b->n[along] / 2;
+  }
+  CF_TRY(CF_NEW(&p->at, (size_t)p->n[0] * (size_t)p->n[1]));
+  for (int j = 0; j < p->n[1]; ++j)
+    for (int i = 0; i < p->n[0]; ++i)
+      p->at[(size_t)j * (size_t)p->n[0] + (size_t)i] = value_at(p, b, f, i, j, from, to);
+  return CF_OK;
+}
+
+void cf_plane_destroy(cf_plane *p) {
+  cf_free(p->at);
+  *p = (cf_plane){.at = NULL};
+}
+
+/* --- at the size of a picture ---------------------------------------------------------------------------------- */
+
+/* How the pixels of one axis are made of cells: pixel i is the sum of weight[taps i + t] times cell first[i] + t. */
+typedef struct mixing {
+  int taps;
+  int *first;
+  double *weight;
+} mixing;
+
+/* Larger: the cubic through the four nearest cells (Catmull and Rom), or the nearest alone. */
+static void mix_larger(mixing *m, const int cells, const int pixels, const bool nearest) {
+  for (int i = 0; i < pixels; ++i) {
+    const double at = (i + 0.5) * cells / pixels - 0.5, s = at - floor(at);
+    double *w = m->weight + (size_t)i * (size_t)m->taps;
+    m->first[i] = (int)floor(at) - 1;
+    if (nearest) {
+      w[s < 0.5 ? 1 : 2] = 1;
+      continue;
+    }
+    w[0] = 0.5 * s * (-1 + s * (2 - s));
+    w[1] = 0.5 * (2 + s * s * (3 * s - 5));
+    w[2] = 0.5 * s * (1 + s * (4 - 3 * s));
+    w[3] = 0.5 * s * s * (s - 1);
+  }
+}
+
+/* Smaller: the mean over what a pixel covers. */
+static void mix_smaller(mixing *m, const int cells, const int pixels) {
+  for (int i = 0; i < pixels; ++i) {
+    const double low = (double)i * cells / pixels, high = (i + 1.0) * cells / pixels;
+    m->first[i] = (int)floor(low);
+    for (int t = 0; t < m->taps; ++t) {
+      const double from = CF_MAX(low, m->first[i] + t), to = CF_MIN(high, m->first[i] + t + 1.0);
+      m->weight[(size_t)i * (size_t)m->taps + (size_t)t] = CF_MAX(to - from, 0) / (high - low);
+    }
+  }
+}
+
+static cf_status mixing_create(mixing *m, const int cells, const int pixels, const bool nearest) {
+  const bool larger = pixels >= cells;
+  *m = (mixing){.taps = larger ? 4 : cells / pixels + 2};
+  CF_TRY(CF_NEW(&m->first, pixels));
+  const cf_status s = CF_NEW(&m->weight, (size_t)pixels * (size_t)m->taps);
+  if (s != CF_OK) {
+    cf_free(m->first);
+    return s;
+  }
+  if (larger)
+    mix_larger(m, cells, pixels, nearest);
+  else
+    mix_smaller(m, cells, pixels);
+  return CF_OK;
+}
+
+static void mixing_destroy(mixing *m) {
+  cf_free(m->first);
+  cf_free(m->weight);
+}
+
+static int inside(const int i, const int n) { return CF_MIN(CF_MAX(i, 0), n - 1); }
+
+/* out[i] for the pixels of a line of cells that lie `stride` apart; pixels `step` apart. */
+static void mix_line(const mixing *m, const int cells, const int pixels, const double *in,
+                     const ptrdiff_t stride, double *out, const ptrdiff_t step) {
+  for (int i = 0; i < pixels; ++i) {
+    const double *w = m->weight + (size_t)i * (size_t)m->taps;
+    double sum = 0;
+    for (int t = 0; t < m->taps; ++t)
+      if (w[t] != 0) sum += w[t] * in[inside(m->first[i] + t, cells) * stride];
+    out[i * step] = sum;
+  }
+}
+
+/* A cubic may swing beyond the cells it lies between: it is held among the four. Where a cell that takes part is not
+ * finite, the nearest one is shown. */
+static double held(const cf_plane *p, const double x, const double y, const double value) {
+  const int i[2] = {inside((int)floor(x), p->n[0]), inside((int)floor(x) + 1, p->n[0])};
+  const int j[2] = {inside((int)floor(y), p->n[1]), inside((int)floor(y) + 1, p->n[1])};
+  double least = INFINITY, largest = -INFINITY;
+  if (!isfinite(value)) {
+    const int column = inside((int)floor(x + 0.5), p->n[0]), row = inside((int)floor(y + 0.5), p->n[1]);
+    return p->at[(size_t)row * (size_t)p->n[0] + (size_t)column];
+  }
+  for (int c = 0; c < 4; ++c) {
+    const double v = p->at[(size_t)j[c / 2] * (size_t)p->n[0] + (size_t)i[c % 2]];
+    least = CF_MIN(least, v);
+    largest = CF_MAX(largest, v);
+  }
+  return CF_MIN(CF_MAX(value, least), largest);
+}
+
+static void hold_all(const cf_plane *p, const int width, const int height, double *values) {
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      double *v = &values[(size_t)(height - 1 - y) * (size_t)width + (size_t)x];
+      *v = held(p, (x + 0.5) * p->n[0] / width - 0.5, (y + 0.5) * p->n[1] / height - 0.5, *v);
+    }
+}
+
+cf_status cf_plane_resample(const cf_plane *p, const int width, const int height, const bool cells,
+                            double *values) {
+  mixing across, up;
+  double *rows;
+  CF_TRY(CF_NEW(&rows, (size_t)width * (size_t)p->n[1]));
+  cf_status s = mixing_create(&across, p->n[0], width, cells);
+  if (s == CF_OK) {
+    s = mixing_create(&up, p->n[1], height, cells);
+    if (s == CF_OK) {
+      for (int j = 0; j < p->n[1]; ++j)
+        mix_line(&across, p->n[0], width, p->at + (size_t)j * (size_t)p->n[0], 1,
+                 rows + (size_t)j * (size_t)width, 1);
+      for (int i = 0; i < width; ++i)
+        mix_line(&up, p->n[1], height, rows + i, width, values + (size_t)(height - 1) * (size_t)width + i,
+                 -width);
+      if (width >= p->n[0] && height >= p->n[1]) hold_all(p, width, height, values);
+      mixing_destroy(&up);
+    }
+    mixing_destroy(&across);
+  }
+  cf_free(rows);
+  return s;
+}
+
+/* --- the range -------------------------------------------------------------------------------------------------- */
+
+#define BINS   8192
+#define BEYOND 0.005 /* of the values may lie beyond an end of the colours */
+
+typedef struct spread {
+  double min, max; /* of the finite values; min > max if there are none */
+  double count;
+  double bins[BINS];
+} spread;
+
+static void find_ends(spread *s, const cf_plane *p) {
+  for (size_t i = 0; i < (size_t)p->n[0] * (size_t)p->n[1]; ++i) {
+    if (!isfinite(p->at[i])) continue;
+    s->min = CF_MIN(s->min, p->at[i]);
+    s->max = CF_MAX(s->max, p->at[i]);
+    ++s->count;
+  }
+}
+
+static void count_bins(spread *s, const cf_plane *p) {
+  const double span = s->max - s->min;
+  for (size_t i = 0; i < (size_t)p->n[0] * (size_t)p->n[1]; ++i)
+    if (isfinite(p->at[i])) ++s->bins[CF_MIN((int)((p->at[i] - s->min) / span * BINS), BINS - 1)];
+}
+
+/* Draws the ends in to the quantiles, unless nothing but the odd cell has a value at all. */
+static void draw_in(spread *s) {
+  const double span = s->max - s->min, width = span / BINS;
+  double below = 0, above = 0;
+  int low = 0, high = BINS - 1;
+  while (low < BINS - 1 && below + s->bins[low] <= BEYOND * s->count) below += s->bins[low++];
+  while (high > 0 && above + s->bins[high] <= BEYOND * s->count) above += s->bins[high--];
+  if (high - low < 4) return;
+  s->max = s->max - (BINS - 1 - high) * width;
+  s->min = s->min + low * width;
+}
+
+/* The ends as the rule has them. */
+static void settle_range(cf_scale *s, double min, double max) {
+  if (!(min <= max)) min = 0, max = 1;
+  if (min == max) {
+    min = CF_MIN(min, 0);
+    max = max > 0 ? max : min < 0 ? 0 : 1;
+  }
+  const bool both = min < -0.05 * max && max > -0.05 * min;
+  const double largest = CF_MAX(-min, max);
+  s->low = both ? -largest : max > 0 && min < max / 2 ? 0 : min;
+  s->high = both ? largest : min < 0 && max <= 0 && max > min / 2 ? 0 : max;
+  if (!both && max > 0 && min < 0) s->low = 0;
+  if (!both && max > 0 && -min > max) s->low = min, s->high = 0;
+  s->map = both ? CF_COLORMAP_balance : CF_COLORMAP_ember;
+}
+
+static bool given_range(const cf_preview *how) { return how->low < how->high; }
+
+cf_status cf_plane_scale(cf_scale *s, const int planes, const cf_plane *plane, const cf_preview *how) {
+  spread *all;
+  cf_colormap map;
+  *s = (cf_scale){.low = 0};
+  if (how->map != NULL) CF_TRY(cf_colormap_find(how->map, &map));
+  CF_TRY(CF_NEW(&all, 1));
+  all->min = INFINITY, all->max = -INFINITY;
+  for (int p = 0; p < planes; ++p) find_ends(all, &plane[p]);
+  const double least = all->min, largest = all->max;
+  if (all->min < all->max && !given_range(how)) {
+    for (int p = 0; p < planes; ++p) count_bins(all, &plane[p]);
+    draw_in(all);
+  }
+  settle_range(s, given_range(how) ? how->low : all->min, given_range(how) ? how->high : all->max);
+  if (given_range(how)) s->low = how->low, s->high = how->high;
+  const double slack = 1e-6 * (s->high - s->low);
+  s->below = least < s->low - slack;
+  s->above = largest > s->high + slack;
+  if (how->map != NULL) s->map = (int)map;
+  cf_free(all);
+  return CF_OK;
+}
