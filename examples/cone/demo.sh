@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 #
 # Figs 3 and 4 of the paper: four streams without Fourier diffusion, then ever more of it in the fastest.
-# usage: demo.sh PROGRAM FOLDER
+# usage: demo.sh [FOLDER]; the program is $CATTANEO, or cattaneo.
 set -eu
-program=$1
-out=$2
+program=${CATTANEO:-cattaneo}
+out=${1:-out/cone}
 here=$(dirname "$0")
 
 run() { # NAME SCENE [--set KEY=VALUE]...

@@ -31,7 +31,8 @@ static inline void cf_fn_row(const cf_fn *f, const int n, const double *x, const
   for (int i = 0; i < n; ++i) out[i] = f->value;
 }
 
-static inline double cf_fn_at(const cf_fn *f, const double x, const double y, const double z, const double t) {
+static inline double cf_fn_at(const cf_fn *f, const double x, const double y, const double z,
+                              const double t) {
   double value;
   cf_fn_row(f, 1, &x, &y, &z, t, &value);
   return value;

@@ -11,11 +11,11 @@
 #ifdef CF_SINGLE
 typedef float cf_real;
 #define CF_REAL_EPSILON FLT_EPSILON
-#define CF_PRECISION "single"
+#define CF_PRECISION    "single"
 #else
 typedef double cf_real;
 #define CF_REAL_EPSILON DBL_EPSILON
-#define CF_PRECISION "double"
+#define CF_PRECISION    "double"
 #endif
 
 #define CF_MIN(a, b) ((a) < (b) ? (a) : (b))

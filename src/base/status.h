@@ -12,18 +12,18 @@
 #define CF_BASE_STATUS_H
 
 /* name, exit code of the program, what it means */
-#define CF_STATUS_LIST(S)                                              \
-  S(OK, 0, "done")                                                     \
-  S(FAILED, 1, "an operation failed")                                  \
-  S(BAD_ARGUMENT, 2, "a value was out of range or did not fit")        \
-  S(BAD_SCENE, 2, "the scene has an error")                            \
-  S(BAD_USAGE, 2, "the command line has an error")                     \
-  S(NOT_CONVERGED, 3, "the solver did not converge")                   \
-  S(NOT_FINITE, 4, "a value stopped being finite")                     \
-  S(NO_MEMORY, 5, "memory or address space ran out")                   \
-  S(OVER_LIMIT, 5, "a limit set by the user or the machine was reached") \
+#define CF_STATUS_LIST(S)                                                 \
+  S(OK, 0, "done")                                                        \
+  S(FAILED, 1, "an operation failed")                                     \
+  S(BAD_ARGUMENT, 2, "a value was out of range or did not fit")           \
+  S(BAD_SCENE, 2, "the scene has an error")                               \
+  S(BAD_USAGE, 2, "the command line has an error")                        \
+  S(NOT_CONVERGED, 3, "the solver did not converge")                      \
+  S(NOT_FINITE, 4, "a value stopped being finite")                        \
+  S(NO_MEMORY, 5, "memory or address space ran out")                      \
+  S(OVER_LIMIT, 5, "a limit set by the user or the machine was reached")  \
   S(BAD_FILE, 1, "a file could not be read, or is not what it should be") \
-  S(CANNOT_WRITE, 1, "a file could not be written")                    \
+  S(CANNOT_WRITE, 1, "a file could not be written")                       \
   S(STOPPED, 130, "stopped on request")
 
 typedef enum cf_status {
@@ -49,9 +49,9 @@ const char *cf_status_sentence(void);
 const char *cf_status_name(cf_status code);
 int cf_status_exit_code(cf_status code);
 
-#define CF_TRY(call)                     \
-  do {                                   \
-    const cf_status cf_try_ = (call);    \
+#define CF_TRY(call)                      \
+  do {                                    \
+    const cf_status cf_try_ = (call);     \
     if (cf_try_ != CF_OK) return cf_try_; \
   } while (0)
 

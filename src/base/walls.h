@@ -14,7 +14,8 @@
 #include "base/fn.h"
 
 /* name as a scene writes it; the order is that of enum cf_wall */
-#define CF_WALL_LIST(W) W(INSULATED, insulated) W(OPEN, open) W(VALUE, value) W(RADIATE, radiate) W(PERIODIC, periodic)
+#define CF_WALL_LIST(W) \
+  W(INSULATED, insulated) W(OPEN, open) W(VALUE, value) W(RADIATE, radiate) W(PERIODIC, periodic)
 
 typedef enum cf_wall {
 #define CF_WALL_ENUM(upper, lower) CF_WALL_##upper,
@@ -27,6 +28,8 @@ typedef struct cf_walls {
   cf_fn value[3][2];  /* read for CF_WALL_VALUE and CF_WALL_RADIATE */
 } cf_walls;
 
-static inline bool cf_wall_is_held(const cf_wall kind) { return kind == CF_WALL_OPEN || kind == CF_WALL_VALUE; }
+static inline bool cf_wall_is_held(const cf_wall kind) {
+  return kind == CF_WALL_OPEN || kind == CF_WALL_VALUE;
+}
 
 #endif

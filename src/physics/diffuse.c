@@ -30,17 +30,19 @@ struct cf_diffuse {
   cf_helmholtz *A;
   bool k_varies, c_varies;
   double k_max, speed_max;
-  double delta;             /* for which A is set; -1: none */
-  cf_face k, beta;          /* on faces, and its multiple for the operator; where k varies */
-  cf_cell capacity, alpha;  /* C where it varies; C plus what holds, where something holds */
-  cf_cell x, b, W;          /* phi~, right side, source */
-  cf_cell fraction, value;  /* of held cells */
-  cf_face B;                /* source of the flux */
+  double delta;            /* for which A is set; -1: none */
+  cf_face k, beta;         /* on faces, and its multiple for the operator; where k varies */
+  cf_cell capacity, alpha; /* C where it varies; C plus what holds, where something holds */
+  cf_cell x, b, W;         /* phi~, right side, source */
+  cf_cell fraction, value; /* of held cells */
+  cf_face B;               /* source of the flux */
   double *rows;
 };
 
 /* m: what is left of a flux after `delta`. 0 for tau = 0, 1 for tau = infinity. */
-static double flux_memory(const double delta, const double tau) { return tau > 0 ? 1 / (1 + delta / tau) : 0; }
+static double flux_memory(const double delta, const double tau) {
+  return tau > 0 ? 1 / (1 + delta / tau) : 0;
+}
 
 /* One stage: its numbers, and what the kernels of a row read and write. */
 typedef struct stage {
@@ -58,7 +60,9 @@ CF_KERNEL cf_real k_at(const int varies, const stage *s, const int a, const ptrd
   return varies ? s->k_face[a][p] : s->k;
 }
 
-CF_KERNEL cf_real capacity_at(const stage *s, const ptrdiff_t p) { return s->capacity != NULL ? s->capacity[p] : 1; }
+CF_KERNEL cf_real capacity_at(const stage *s, const ptrdiff_t p) {
+  return s->capacity != NULL ? s->capacity[p] : 1;
+}
 
 CF_KERNEL cf_real gain_at(const stage *s, const ptrdiff_t p) { return s->W != NULL ? s->d * s->W[p] : 0; }
 
@@ -79,7 +83,8 @@ CF_KERNEL void right_side_row(const int dim, const int n, const stage *s, const 
 }
 CF_CLONED(right_side_row, const stage *, const ptrdiff_t)
 
-CF_KERNEL void cells_row(const int dim, const int varies, const int n, const stage *s, const ptrdiff_t start) {
+CF_KERNEL void cells_row(const int dim, const int varies, const int n, const stage *s,
+                         const ptrdiff_t start) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
     const ptrdiff_t p = start + i;
@@ -92,7 +97,8 @@ CF_KERNEL void cells_row(const int dim, const int varies, const int n, const sta
 CF_CLONED_FORMS(cells_row, const stage *, const ptrdiff_t)
 
 /* One axis' faces; which axis is told by the row's number (see update_faces). */
-CF_KERNEL void faces_of_axis(const int varies, const int n, const stage *s, const int a, const ptrdiff_t start) {
+CF_KERNEL void faces_of_axis(const int varies, const int n, const stage *s, const int a,
+                             const ptrdiff_t start) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
     const ptrdiff_t p = start + i;
@@ -104,7 +110,8 @@ CF_KERNEL void faces_of_axis(const int varies, const int n, const stage *s, cons
 }
 
 /* All faces that the cells of a row own, and the row's high wall in x. */
-CF_KERNEL void faces_row(const int dim, const int varies, const int n, const stage *s, const ptrdiff_t start) {
+CF_KERNEL void faces_row(const int dim, const int varies, const int n, const stage *s,
+                         const ptrdiff_t start) {
   faces_of_axis(varies, n + 1, s, 0, start);
   for (int a = 1; a < dim; ++a) faces_of_axis(varies, n, s, a, start);
 }
@@ -129,7 +136,8 @@ static void high_walls(const cf_diffuse *d, const stage *s) {
 
 static cf_status check_params(const cf_diffuse_params *p) {
   if (!(p->tau >= 0)) return cf_fail(CF_BAD_ARGUMENT, "tau = %g s: must be >= 0", p->tau);
-  if (!(p->f_t >= 0 && p->f_t <= 1)) return cf_fail(CF_BAD_ARGUMENT, "f_t = %g: must be between 0 and 1", p->f_t);
+  if (!(p->f_t >= 0 && p->f_t <= 1))
+    return cf_fail(CF_BAD_ARGUMENT, "f_t = %g: must be between 0 and 1", p->f_t);
   if (!(p->solver.tolerance > 0 && p->solver.tolerance < 1))
     return cf_fail(CF_BAD_ARGUMENT, "tolerance = %g: must be between 0 and 1", p->solver.tolerance);
   return CF_OK;
@@ -148,13 +156,14 @@ static void faces_from_cells(const cf_box *box, const cf_real *cell, const cf_fa
         }
 }
 
-static cf_status sample_positive(const cf_diffuse *d, const cf_fn *f, const char *what, const bool zero_is_fine,
-                                 const cf_cell out) {
+static cf_status sample_positive(const cf_diffuse *d, const cf_fn *f, const char *what,
+                                 const bool zero_is_fine, const cf_cell out) {
   CF_TRY(cf_grid_sample(d->grid, f, CF_CENTRES, 0, out.at));
   const cf_range range = cf_sweep_range(&d->grid->box, 1, out.at, d->rows);
   int where[3];
   if (!cf_sweep_finite(&d->grid->box, 1, out.at, where))
-    return cf_fail(CF_BAD_ARGUMENT, "%s is not finite in cell (%d, %d, %d)", what, where[0], where[1], where[2]);
+    return cf_fail(CF_BAD_ARGUMENT, "%s is not finite in cell (%d, %d, %d)", what, where[0], where[1],
+                   where[2]);
   if (range.min < 0 || (range.min == 0 && !zero_is_fine))
     return cf_fail(CF_BAD_ARGUMENT, "%s = %g somewhere in the box: must be %s", what, range.min,
                    zero_is_fine ? ">= 0" : "> 0");
@@ -166,7 +175,8 @@ static cf_status make_k(cf_diffuse *d) {
   d->k_max = d->p.k.value;
   d->k_varies = !cf_fn_is_constant(&d->p.k);
   if (!d->k_varies) {
-    if (!(d->k_max >= 0) || !isfinite(d->k_max)) return cf_fail(CF_BAD_ARGUMENT, "k = %g: must be >= 0", d->k_max);
+    if (!(d->k_max >= 0) || !isfinite(d->k_max))
+      return cf_fail(CF_BAD_ARGUMENT, "k = %g: must be >= 0", d->k_max);
     return CF_OK;
   }
   CF_TRY(cf_face_create(&d->k, box));
@@ -213,8 +223,8 @@ static cf_status make_fields(cf_diffuse *d) {
   return CF_OK;
 }
 
-cf_status cf_diffuse_create(cf_diffuse **d, const cf_grid *g, const cf_walls *walls, const cf_diffuse_params *p,
-                            const cf_source *source) {
+cf_status cf_diffuse_create(cf_diffuse **d, const cf_grid *g, const cf_walls *walls,
+                            const cf_diffuse_params *p, const cf_source *source) {
   *d = NULL;
   CF_TRY(check_params(p));
   cf_diffuse *fresh;
@@ -273,12 +283,12 @@ static void scale_faces(const cf_box *box, const int threads, const cf_real fact
 /* alpha = C (1 + f/(1 - f)) where a fraction f of the cell is held. */
 static void alpha_where_held(cf_diffuse *d) {
   const cf_box *box = &d->grid->box;
-  CF_PARALLEL_ROWS(box, d->grid->threads, r)
-  for (int i = 0; i < box->n[0]; ++i) {
-    const ptrdiff_t p = cf_box_row(box, r) + i;
-    const double f = (double)d->fraction.at[p], hold = f < 1 ? CF_MIN(f / (1 - f), HOLD_MAX) : HOLD_MAX;
-    d->alpha.at[p] = (cf_real)((d->c_varies ? (double)d->capacity.at[p] : 1) * (1 + hold));
-  }
+  CF_PARALLEL_ROWS (box, d->grid->threads, r)
+    for (int i = 0; i < box->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(box, r) + i;
+      const double f = (double)d->fraction.at[p], hold = f < 1 ? CF_MIN(f / (1 - f), HOLD_MAX) : HOLD_MAX;
+      d->alpha.at[p] = (cf_real)((d->c_varies ? (double)d->capacity.at[p] : 1) * (1 + hold));
+    }
 }
 
 static cf_status set_operator(cf_diffuse *d, const stage *s) {
@@ -303,12 +313,12 @@ static cf_status set_operator(cf_diffuse *d, const stage *s) {
 /* b += C f/(1 - f) value, to match alpha. */
 static void right_side_where_held(const cf_diffuse *d) {
   const cf_box *box = &d->grid->box;
-  CF_PARALLEL_ROWS(box, d->grid->threads, r)
-  for (int i = 0; i < box->n[0]; ++i) {
-    const ptrdiff_t p = cf_box_row(box, r) + i;
-    const double c = d->c_varies ? (double)d->capacity.at[p] : 1;
-    d->b.at[p] += (cf_real)(((double)d->alpha.at[p] - c) * (double)d->value.at[p]);
-  }
+  CF_PARALLEL_ROWS (box, d->grid->threads, r)
+    for (int i = 0; i < box->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(box, r) + i;
+      const double c = d->c_varies ? (double)d->capacity.at[p] : 1;
+      d->b.at[p] += (cf_real)(((double)d->alpha.at[p] - c) * (double)d->value.at[p]);
+    }
 }
 
 /* --- the ledger ------------------------------------------------------------------------------------------- */
@@ -334,7 +344,7 @@ static double content_row(const int n, const cf_real *c, const cf_real *x) {
 /* Integral of C f. */
 static double integral(const cf_diffuse *d, const cf_cell f) {
   const cf_box *box = &d->grid->box;
-  CF_PARALLEL_ROWS(box, d->grid->threads, r) {
+  CF_PARALLEL_ROWS (box, d->grid->threads, r) {
     const ptrdiff_t p = cf_box_row(box, r);
     d->rows[r] = content_row(box->n[0], d->c_varies ? d->capacity.at + p : NULL, f.at + p);
   }
@@ -369,7 +379,7 @@ static void account_walls(const cf_diffuse *d, const stage *s, cf_ledger *ledger
  * old + w ((1 - f) Y + f v - old) = phi + w f (v - Y). W is scratch for Y's change. */
 static double hold_cells(const cf_diffuse *d, const stage *s) {
   const cf_box *box = &d->grid->box;
-  CF_PARALLEL_ROWS(box, d->grid->threads, r) {
+  CF_PARALLEL_ROWS (box, d->grid->threads, r) {
     const ptrdiff_t start = cf_box_row(box, r);
     double sum = 0;
     for (int i = 0; i < box->n[0]; ++i) {
@@ -386,8 +396,8 @@ static double hold_cells(const cf_diffuse *d, const stage *s) {
 
 static void copy_cells(const cf_diffuse *d, const cf_real *from, cf_real *to) {
   const cf_box *box = &d->grid->box;
-  CF_PARALLEL_ROWS(box, d->grid->threads, r)
-  scale_row(box->n[0], 1, from + cf_box_row(box, r), to + cf_box_row(box, r));
+  CF_PARALLEL_ROWS (box, d->grid->threads, r)
+    scale_row(box->n[0], 1, from + cf_box_row(box, r), to + cf_box_row(box, r));
 }
 
 /* --- the stage -------------------------------------------------------------------------------------------- */
@@ -461,7 +471,8 @@ static void add_flux_source(const cf_diffuse *d, const double factor, const cf_f
 
 static cf_status solve_stage(cf_diffuse *d, const stage *s, const cf_cell phi, cf_solve_report *report) {
   const cf_box *box = &d->grid->box;
-  CF_PARALLEL_ROWS(box, d->grid->threads, r) right_side_row_by_dim(box->dim, box->n[0], s, cf_box_row(box, r));
+  CF_PARALLEL_ROWS (box, d->grid->threads, r)
+    right_side_row_by_dim(box->dim, box->n[0], s, cf_box_row(box, r));
   CF_TRY(set_operator(d, s));
   cf_helmholtz_add_walls(d->A, &d->walls, d->b);
   if (d->source.hold != NULL) right_side_where_held(d);
@@ -487,14 +498,14 @@ static cf_status run_stage(cf_diffuse *d, const stage_plan *plan, const cf_cell 
   if (d->p.scheme == CF_DIFFUSE_PAPER) {
     copy_cells(d, d->x.at, phi.at);
   } else {
-    CF_PARALLEL_ROWS(box, d->grid->threads, r)
-    cells_row_by_form(box->dim, d->k_varies, box->n[0], &s, cf_box_row(box, r));
+    CF_PARALLEL_ROWS (box, d->grid->threads, r)
+      cells_row_by_form(box->dim, d->k_varies, box->n[0], &s, cf_box_row(box, r));
   }
   if (d->source.rate != NULL) cf_ledger_add(ledger, plan->w * plan->delta * integral(d, d->W));
   account_walls(d, &s, ledger);
   if (d->source.hold != NULL) cf_ledger_add(ledger, hold_cells(d, &s));
-  CF_PARALLEL_ROWS(box, d->grid->threads, r)
-  faces_row_by_form(box->dim, d->k_varies, box->n[0], &s, cf_box_row(box, r));
+  CF_PARALLEL_ROWS (box, d->grid->threads, r)
+    faces_row_by_form(box->dim, d->k_varies, box->n[0], &s, cf_box_row(box, r));
   high_walls(d, &s);
   add_flux_source(d, (plan->w - 1) * plan->delta, q);
   return CF_OK;

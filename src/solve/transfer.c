@@ -210,6 +210,31 @@ void cf_level_prolong(const cf_level *coarse, const cf_cell x_c, const cf_level 
                 x_f.at);
 }
 
+/* The coefficient between the centres of the two coarse cells that meet in fine face i (at p) of an axis: in
+ * series, the face itself and on either side the part of the next face that lies before the coarse centre. A
+ * closed face there cuts off a piece of a coarse cell, no more; closed in the middle is closed. */
+static double in_series(const cf_level *fine, const cf_level *coarse, const int axis, const int i, const ptrdiff_t p) {
+  const cf_axis *f = &fine->axis[axis];
+  const cf_real *beta = fine->beta.at[axis];
+  const double own = (double)beta[p];
+  if (own <= 0 || !fine->pairing[axis].coarsened) return own;
+  double length = 0, resistance = 0;
+  for (int side = 0; side < 2; ++side) {
+    int cell = side == 0 ? i - 1 : i; /* on that side of the face */
+    if (f->periodic) cell = (cell + f->n) % f->n;
+    if (cell < 0 || cell >= f->n) continue;
+    const int next = side == 0 ? cell : cell + 1; /* the face behind that cell */
+    const double rest = 0.5 * (coarse->axis[axis].width[fine->pairing[axis].parent[cell]] - f->width[cell]);
+    const double beside = (double)beta[p + (next - i) * fine->box.stride[axis]];
+    length += 0.5 * f->width[cell];
+    resistance += 0.5 * f->width[cell] / own;
+    if (beside <= 0) continue;
+    length += rest;
+    resistance += rest / beside;
+  }
+  return length / resistance;
+}
+
 static double mean_face(const cf_level *fine, const cf_level *coarse, const int axis, const int at[3]) {
   int first[3] = {0, 0, 0}, count[3] = {1, 1, 1};
   for (int a = 0; a < fine->box.dim; ++a) {
@@ -226,7 +251,7 @@ static double mean_face(const cf_level *fine, const cf_level *coarse, const int 
         double share = 1;
         for (int a = 0; a < fine->box.dim; ++a)
           if (a != axis) share *= (double)fine->pairing[a].share[child[a]];
-        mean += share * (double)fine->beta.at[axis][cf_box_at(&fine->box, i, j, k)];
+        mean += share * in_series(fine, coarse, axis, child[axis], cf_box_at(&fine->box, i, j, k));
       }
   return mean;
 }
