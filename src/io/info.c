@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT */
+#include "io/info.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/mem.h"
+#include "grid/sweep.h"
+#include "io/checkpoint.h"
+#include "io/checksum.h"
+#include "io/frame.h"
+#include "io/hdf5.h"
+
+#define NUMBERS_SHOWN 4
+
+/* --- text that grows ---------------------------------------------------------------------------------------- */
+
+typedef struct report {
+  char *text;
+  size_t length, room;
+} report;
+
+static cf_status say(report *r, const char *format, ...) CF_PRINTF(2, 3);
+
+static cf_status say(report *r, const char *format, ...) {
+  char line[2 * CF_SENTENCE_MAX];
+  va_list values;
+  va_start(values, format);
+  vsnprintf(line, sizeof line, format, values);
+  va_end(values);
+  const size_t more = strlen(line);
+  if (r->length + more + 1 > r->room) {
+    char *larger;
+    const size_t room = 2 * (r->room + more + 1);
+    CF_TRY(CF_NEW(&larger, room));
+    if (r->length > 0) memcpy(larger, r->text, r->length);
+    cf_free(r->text);
+    r->text = larger;
+    r->room = room;
+  }
+  memcpy(r->text + r->length, line, more + 1);
+  r->length += more;
+  return CF_OK;
+}
+
+/* --- one array ------------------------------------------------------------------------------------------------ */
+
+typedef struct facts {
+  cf_range range;
+  uint64_t checksum;
+  bool finite;
+  int where[3];
+} facts;
+
+static cf_status look_at(const cf_box *b, const cf_cell f, facts *a) {
+  const cf_slabs s = cf_slabs_of_cell(b, f);
+  cf_checksum sum;
+  cf_slab piece;
+  cf_real *buffer;
+  double *rows;
+  CF_TRY(CF_NEW(&rows, 3 * (size_t)cf_box_rows(b)));
+  a->range = cf_sweep_range(b, 1, f.at, rows);
+  a->finite = cf_sweep_finite(b, 1, f.at, a->where) != 0;
+  cf_free(rows);
+  CF_TRY(CF_NEW(&buffer, cf_slabs_room(&s)));
+  cf_checksum_start(&sum);
+  for (int64_t i = 0; cf_slabs_piece(&s, i, &piece); ++i) {
+    cf_slab_gather(&s, piece, buffer);
+    cf_checksum_add(&sum, buffer, cf_slab_size(&s, piece) * sizeof *buffer);
+  }
+  a->checksum = cf_checksum_end(&sum);
+  cf_free(buffer);
+  return CF_OK;
+}
+
+/* One component of an array of rank 3 or 4, read into a field of its shape. */
+static cf_status read_array(cf_hdf5 *h, const char *path, const cf_array *shape, const int component,
+                            facts *a) {
+  const int n[3] = {(int)shape->n[2], (int)shape->n[1], (int)shape->n[0]};
+  cf_box b;
+  cf_cell f;
+  CF_TRY(cf_box_init(&b, 3, n, 0));
+  CF_TRY(cf_cell_create(&f, &b));
+  const cf_slabs s = cf_slabs_of_cell(&b, f);
+  cf_status status = cf_hdf5_read_component(h, path, &s, shape->rank == 4 ? (int)shape->n[3] : 1, component);
+  if (status == CF_OK) status = look_at(&b, f, a);
+  cf_cell_destroy(&f, &b);
+  return status;
+}
+
+static cf_status say_facts(report *r, const char *name, const char *unit, const facts *a,
+                           const double weight) {
+  CF_TRY(say(r, "  %-16s %-10s %24.17g %24.17g %24.17g  %016" PRIx64 "%s", name, unit, a->range.min,
+             a->range.max, a->range.sum * weight, a->checksum, a->finite ? "\n" : "  NOT FINITE"));
+  if (a->finite) return CF_OK;
+  return say(r, " at (%d, %d, %d)\n", a->where[0], a->where[1], a->where[2]);
+}
+
+/* --- a file --------------------------------------------------------------------------------------------------- */
+
+typedef struct listing {
+  report *r;
+  const char *group; /* "/state" ... */
+  double volume;     /* of a cell */
+} listing;
+
+static cf_status say_numbers(report *r, cf_hdf5 *h, const char *path, const char *name,
+                             const cf_array *shape) {
+  double *values;
+  const cf_array a = {CF_ELEMENT_NUMBER, 1, {shape->n[0]}};
+  CF_TRY(CF_NEW(&values, shape->n[0]));
+  cf_status s = cf_hdf5_read(h, path, &a, values);
+  if (s == CF_OK) s = say(r, "  %-16s", name);
+  for (int64_t i = 0; s == CF_OK && i < shape->n[0] && i < NUMBERS_SHOWN; ++i)
+    s = say(r, " %.17g", values[i]);
+  if (s == CF_OK)
+    s = say(r, shape->n[0] > NUMBERS_SHOWN ? " ... (%" PRId64 " numbers)\n" : "\n", shape->n[0]);
+  cf_free(values);
+  return s;
+}
+
+/* Particles: components side by side, as if a field of one plane. */
+static cf_status say_particles(report *r, cf_hdf5 *h, const char *path, const char *name,
+                               const cf_array *shape) {
+  const int n[3] = {(int)CF_MAX(shape->n[1], 1), (int)shape->n[0], 1};
+  char unit[CF_NAME_MAX] = "";
+  cf_real *values;
+  facts a;
+  if (shape->n[0] == 0) return say(r, "  %-16s no particles\n", name);
+  if (shape->n[0] > INT32_MAX) return say(r, "  %-16s %" PRId64 " particles\n", name, shape->n[0]);
+  if (cf_hdf5_get_text(h, path, "unit", unit, sizeof unit) != CF_OK) unit[0] = '\0';
+  CF_TRY(CF_NEW(&values, (size_t)n[0] * (size_t)n[1]));
+  cf_box b = {.dim = 2, .n = {n[0], n[1], 1}, .stride = {1, n[0], (ptrdiff_t)n[0] * n[1]}};
+  const cf_array wanted = {CF_ELEMENT_REAL, shape->rank, {shape->n[0], shape->n[1]}};
+  cf_status s = cf_hdf5_read(h, path, &wanted, values);
+  if (s == CF_OK) s = look_at(&b, (cf_cell){values}, &a);
+  if (s == CF_OK) s = say_facts(r, name, unit, &a, 1);
+  cf_free(values);
+  return s;
+}
+
+static cf_status say_components(report *r, cf_hdf5 *h, const char *path, const char *name,
+                                const cf_array *shape, const double weight) {
+  char unit[CF_NAME_MAX] = "", full[CF_NAME_MAX + 4];
+  const int components = shape->rank == 4 ? (int)shape->n[3] : 1;
+  if (cf_hdf5_get_text(h, path, "unit", unit, sizeof unit) != CF_OK) unit[0] = '\0';
+  for (int c = 0; c < components; ++c) {
+    facts a;
+    CF_TRY(read_array(h, path, shape, c, &a));
+    snprintf(full, sizeof full, components > 1 ? "%s.%c" : "%s", name, "xyz"[c % 3]);
+    CF_TRY(say_facts(r, full, unit, &a, weight));
+  }
+  return CF_OK;
+}
+
+static cf_status visit_array(void *context, cf_hdf5 *h, const char *name);
+
+/* A face field is a group of its components; the sum of faces is plain. */
+static cf_status visit_group(const listing *l, cf_hdf5 *h, const char *path, const char *name) {
+  for (int a = 0; a < 3; ++a) {
+    cf_path component;
+    cf_array shape;
+    char full[CF_NAME_MAX + 4];
+    CF_TRY(cf_path_make(&component, "%s/%c", path, "xyz"[a]));
+    if (!cf_hdf5_has(h, component.text)) continue;
+    CF_TRY(cf_hdf5_shape(h, component.text, &shape));
+    if (shape.rank != 3) continue;
+    snprintf(full, sizeof full, "%.60s/%c", name, "xyz"[a]);
+    CF_TRY(say_components(l->r, h, component.text, full, &shape, 1));
+  }
+  return CF_OK;
+}
+
+static cf_status visit_array(void *context, cf_hdf5 *h, const char *name) {
+  const listing *l = context;
+  cf_path path;
+  cf_array shape;
+  CF_TRY(cf_path_make(&path, "%s/%s", l->group, name));
+  if (cf_hdf5_shape(h, path.text, &shape) != CF_OK) return visit_group(l, h, path.text, name);
+  const bool particles = strcmp(l->group, "/VTKHDF/PointData") == 0;
+  if (shape.rank == 2 || particles) return say_particles(l->r, h, path.text, name, &shape);
+  if (shape.rank == 1) return say_numbers(l->r, h, path.text, name, &shape);
+  return say_components(l->r, h, path.text, name, &shape, l->volume);
+}
+
+static cf_status say_head(report *r, cf_hdf5 *h) {
+  char title[256], version[64], precision[16];
+  double time;
+  int64_t step;
+  CF_TRY(cf_hdf5_get_text(h, "/", "title", title, sizeof title));
+  CF_TRY(cf_hdf5_get_text(h, "/", "version", version, sizeof version));
+  CF_TRY(cf_hdf5_get_text(h, "/", "precision", precision, sizeof precision));
+  CF_TRY(cf_hdf5_get_numbers(h, "/", "time", 1, &time));
+  CF_TRY(cf_hdf5_get_integers(h, "/", "step", 1, &step));
+  CF_TRY(say(r, "  scene    %s\n  program  Cattaneo %s, %s precision%s\n", title, version, precision,
+             strcmp(precision, CF_PRECISION) == 0 ? ""
+                                                  : " (checksums are of the values as read, in " CF_PRECISION
+                                                    ")"));
+  return say(r, "  time     %.17g s, step %" PRId64 "\n", time, step);
+}
+
+static cf_status say_group(report *r, cf_hdf5 *h, const char *group, const double volume) {
+  listing l = {r, group, volume};
+  return cf_hdf5_has(h, group) ? cf_hdf5_each(h, group, visit_array, &l) : CF_OK;
+}
+
+static const char columns[] =
+    "  field            unit                            min                      max                      "
+    "sum  "
+    "checksum\n";
+
+static cf_status say_state(report *r, cf_hdf5 *h) {
+  int64_t dim, n[3];
+  double spacing;
+  CF_TRY(say_head(r, h));
+  CF_TRY(cf_hdf5_get_integers(h, "/", "dim", 1, &dim));
+  CF_TRY(cf_hdf5_get_integers(h, "/", "cells", 3, n));
+  CF_TRY(cf_hdf5_get_numbers(h, "/", "spacing", 1, &spacing));
+  CF_TRY(say(r, "  grid     %" PRId64 " x %" PRId64 " x %" PRId64 " cells, h = %.17g m\n%s", n[0], n[1], n[2],
+             spacing, columns));
+  return say_group(r, h, "/state", pow(spacing, (double)dim));
+}
+
+static cf_status say_frame(report *r, cf_hdf5 *h) {
+  char type[32];
+  int64_t dim, extent[6];
+  double spacing[3] = {1, 1, 1};
+  CF_TRY(say_head(r, h));
+  CF_TRY(cf_hdf5_get_text(h, "/VTKHDF", "Type", type, sizeof type));
+  CF_TRY(cf_hdf5_get_integers(h, "/", "dim", 1, &dim));
+  if (strcmp(type, "ImageData") == 0) {
+    CF_TRY(cf_hdf5_get_integers(h, "/VTKHDF", "WholeExtent", 6, extent));
+    CF_TRY(cf_hdf5_get_numbers(h, "/VTKHDF", "Spacing", 3, spacing));
+    CF_TRY(say(r, "  grid     %" PRId64 " x %" PRId64 " x %" PRId64 " cells, h = %.17g m\n", extent[1],
+               extent[3], extent[5], spacing[0]));
+  }
+  CF_TRY(say(r, "%s", columns));
+  CF_TRY(say_group(r, h, "/VTKHDF/CellData", pow(spacing[0], (double)dim)));
+  CF_TRY(say_group(r, h, "/faces", 1));
+  return say_group(r, h, "/VTKHDF/PointData", 1);
+}
+
+static cf_status say_file(report *r, const char *path) {
+  cf_hdf5 h;
+  const cf_status whole = cf_checkpoint_check(path);
+  if (whole == CF_OK) {
+    CF_TRY(say(r, "%s: a checkpoint, whole\n", path));
+    CF_TRY(cf_hdf5_open(&h, path));
+    return cf_hdf5_close(&h, say_state(r, &h));
+  }
+  /* A damaged checkpoint is not handed to HDF5. */
+  if (strstr(cf_status_sentence(), "is not a checkpoint") == NULL) return whole;
+  CF_TRY(cf_hdf5_open(&h, path));
+  cf_status s = CF_OK;
+  if (!cf_hdf5_has(&h, "/VTKHDF")) s = cf_fail(CF_BAD_FILE, "%s: is neither a frame nor a checkpoint", path);
+  if (s == CF_OK) s = say(r, "%s: a frame\n", path);
+  if (s == CF_OK) s = say_frame(r, &h);
+  return cf_hdf5_close(&h, s);
+}
+
+/* --- a folder ------------------------------------------------------------------------------------------------- */
+
+static cf_status say_checkpoints(report *r, const char *path) {
+  int count;
+  int64_t *steps;
+  cf_status s;
+  CF_TRY(cf_folder_numbers(path, "checkpoint", "h5", &count, &steps));
+  s = say(r, "  checkpoints  %d\n", count);
+  for (int i = 0; i < count && s == CF_OK; ++i) {
+    cf_path file;
+    s = cf_path_make(&file, "%s/checkpoint_%06" PRId64 ".h5", path, steps[i]);
+    if (s != CF_OK) break;
+    const bool whole = cf_checkpoint_check(file.text) == CF_OK;
+    s = whole ? say(r, "    step %" PRId64 ": whole\n", steps[i])
+              : say(r, "    step %" PRId64 ": not usable: %s\n", steps[i], cf_status_sentence());
+  }
+  cf_free(steps);
+  return s;
+}
+
+static cf_status say_folder(report *r, const char *path) {
+  int count;
+  int64_t *frames;
+  cf_path last;
+  CF_TRY(cf_folder_numbers(path, "fields", "vtkhdf", &count, &frames));
+  cf_status s = say(r, "%s: the folder of a run\n  frames       %d\n", path, count);
+  if (s == CF_OK && count > 0)
+    s = cf_path_make(&last, "%s/fields_%06" PRId64 ".vtkhdf", path, frames[count - 1]);
+  cf_free(frames);
+  CF_TRY(s);
+  CF_TRY(say_checkpoints(r, path));
+  return count > 0 ? say_file(r, last.text) : CF_OK;
+}
+
+cf_status cf_info_text(const char *path, char **text) {
+  report r = {NULL, 0, 0};
+  struct stat what;
+  *text = NULL;
+  const bool folder = stat(path, &what) == 0 && S_ISDIR(what.st_mode);
+  const cf_status s = folder ? say_folder(&r, path) : say_file(&r, path);
+  if (s == CF_OK)
+    *text = r.text;
+  else
+    cf_free(r.text);
+  return s;
+}
