@@ -35,7 +35,7 @@ const char *cf_param_default(const cf_param *param) {
   return param->fallback == CF_REQUIRED ? NULL : param->fallback;
 }
 
-/* --- rows ---------------------------------------------------------------------------------------------- */
+/* --- rows ------------------------------------------------------------------------------------- */
 
 static const cf_param *find(const cf_param_table *table, const char *name, const size_t length) {
   for (int i = 0; i < table->count; ++i) {

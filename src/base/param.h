@@ -55,7 +55,7 @@ typedef bool cf_param_flag;
 typedef int cf_param_word;       /* index among the words of the row */
 typedef unsigned cf_param_words; /* a set of words: bit i is word i */
 typedef const char *cf_param_text;
-typedef const char *cf_param_key; /* not a key of the scene: the name of a record in its map */
+typedef const char *cf_param_key;      /* not a key of the scene: the name of a record in its map */
 typedef cf_function cf_param_function; /* of x, y, z and t */
 typedef cf_function cf_param_profile;  /* of x, y and z */
 typedef cf_interval cf_param_interval;
@@ -137,7 +137,7 @@ typedef struct cf_param_items {
 cf_param_items cf_param_items_get(const void *member);
 void cf_param_items_set(void *member, cf_param_items items);
 
-/* --- from a table to C ------------------------------------------------------------------------------- */
+/* --- from a table to C ------------------------------------------------------------------------ */
 
 /* Inside a struct: the flags and the members of a table. */
 #define CF_PARAM_MEMBERS(TABLE)                  \
@@ -195,7 +195,7 @@ void cf_param_items_set(void *member, cf_param_items items);
 #define CF_WORD_TEXT(upper, lower) #lower "|"
 #define CF_WORDS(LIST)             LIST(CF_WORD_TEXT)
 
-/* --- what tables can answer --------------------------------------------------------------------------- */
+/* --- what tables can answer ------------------------------------------------------------------- */
 
 /* The row of `name` in one table; NULL: there is none. */
 const cf_param *cf_param_find(const cf_param_table *table, const char *name);

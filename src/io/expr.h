@@ -5,9 +5,8 @@
  * What may stand in one: numbers, + - * / ^, comparisons, && ||, C ? A : B, parentheses, the constant pi, the
  * constants handed in, and the functions of CF_EXPR_FUNCTIONS. No assignment, one value only.
  *
- * An expression in which no variable stands becomes a constant cf_fn. Evaluation goes by rows and takes a
- * lock, because the parser keeps its variables inside: calling from several threads is safe and not faster.
- * At about 40 ns a point: sample what does not depend on t once (cf_fn.in_time says).
+ * An expression in which no variable stands becomes a constant cf_fn. Evaluation goes by rows and may go on in several
+ * threads at the same time. About 40 ns a point: sample what does not depend on t once (cf_fn.in_time says).
  */
 #ifndef CF_IO_EXPR_H
 #define CF_IO_EXPR_H

@@ -16,9 +16,7 @@
 
 enum { NAME_MAX_LENGTH = 63, ENTRIES_MAX = 1000 };
 
-/* --- files
- * -----------------------------------------------------------------------------------------------------------
- */
+/* --- files ------------------------------------------------------------------------------------ */
 
 static cf_status fail_file(const char *path, const char *why) {
   const size_t length = strlen(path);
@@ -54,9 +52,7 @@ static cf_status read_file(cf_config *config, const char *path) {
   return status;
 }
 
-/* --- open
- * ------------------------------------------------------------------------------------------------------------
- */
+/* --- open ------------------------------------------------------------------------------------- */
 
 static cf_status check_text(const cf_config *config, const int source) {
   const cf_source *s = &config->source[source];
@@ -124,9 +120,7 @@ cf_status cf_config_open(cf_config **config, const cf_param_table *root, const c
 const char *cf_config_path(const cf_config *config) { return config->path; }
 const char *cf_config_folder(const cf_config *config) { return config->folder; }
 
-/* --- records
- * ---------------------------------------------------------------------------------------------------------
- */
+/* --- records ---------------------------------------------------------------------------------- */
 
 static cf_status read_record(cf_reader *reader, const cf_param_table *table, const cf_node *node,
                              char *record);

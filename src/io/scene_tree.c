@@ -28,8 +28,7 @@ struct cf_kept {
   cf_expr *expr;
 };
 
-/* --- memory
- * ---------------------------------------------------------------------------------------------------- */
+/* --- memory ----------------------------------------------------------------------------------- */
 
 cf_status cf_config_new(cf_config *config, void **block, const size_t bytes) {
   struct cf_block *fresh;
@@ -82,8 +81,7 @@ void cf_config_destroy(cf_config *config) {
   cf_free(config);
 }
 
-/* --- nodes
- * ------------------------------------------------------------------------------------------------------ */
+/* --- nodes ------------------------------------------------------------------------------------ */
 
 cf_status cf_node_create(cf_config *config, cf_node **node, const cf_node_kind kind, const cf_place place) {
   void *block;
@@ -150,8 +148,7 @@ const cf_node *cf_node_find_path(const cf_node *root, const char *path, bool *ex
   return node;
 }
 
-/* --- overrides
- * -------------------------------------------------------------------------------------------------- */
+/* --- overrides -------------------------------------------------------------------------------- */
 
 static void replace_child(cf_node *parent, const cf_node *old, cf_node *fresh) {
   fresh->next = old->next;
@@ -230,8 +227,7 @@ cf_status cf_override_apply(cf_config *config, const int source) {
   return set_value(config, source, equals);
 }
 
-/* --- text
- * -------------------------------------------------------------------------------------------------------- */
+/* --- text ------------------------------------------------------------------------------------- */
 
 /* Length of the UTF-8 character at the start of `text`, 0 if it is none. */
 static size_t character_length(const unsigned char *text, const size_t left) {

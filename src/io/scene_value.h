@@ -35,6 +35,10 @@ cf_status cf_value_read(cf_reader *reader, const cf_param *param, const cf_node 
 cf_status cf_value_function(cf_reader *reader, const cf_param *param, const cf_node *node,
                             cf_expr_variables variables, cf_function *function);
 cf_status cf_value_quantity(cf_reader *reader, const cf_node *node, const char *unit, double *value);
+cf_status cf_value_functions(cf_reader *reader, const cf_param *param, const cf_node *node,
+                             cf_expr_variables variables, cf_param_functions *functions);
+cf_status cf_value_in_range(const cf_reader *reader, const cf_param *param, const cf_node *node,
+                            double value);
 cf_status cf_value_expect_scalar(const cf_reader *reader, const cf_param *param, const cf_node *node);
 cf_status cf_value_walls(cf_reader *reader, const cf_param *param, const cf_node *node,
                          cf_param_walls *walls);

@@ -12,9 +12,7 @@
 #include "base/mem.h"
 #include "io/scene_value.h"
 
-/* --- walls
- * ---------------------------------------------------------------------------------------------------------
- */
+/* --- walls ------------------------------------------------------------------------------------ */
 
 #define CF_WALL_WORD(upper, lower) #lower "|"
 static const char wall_words[] = CF_WALL_LIST(CF_WALL_WORD);
@@ -87,8 +85,7 @@ cf_status cf_value_walls(cf_reader *reader, const cf_param *param, const cf_node
   return CF_OK;
 }
 
-/* --- intervals
- * ----------------------------------------------------------------------------------------------------- */
+/* --- intervals -------------------------------------------------------------------------------- */
 
 /* "100 steps": the number before the word; false if the text does not end so. */
 static bool ends_in_steps(const char *text, size_t *number) {
@@ -137,8 +134,7 @@ cf_status cf_value_interval(cf_reader *reader, const cf_param *param, const cf_n
   return cf_reader_fail(reader, node, "%s = %.60s: must be > 0", reader->path, node->text);
 }
 
-/* --- constants
- * ----------------------------------------------------------------------------------------------------- */
+/* --- constants -------------------------------------------------------------------------------- */
 
 static cf_status constants_room(cf_config *config, const int count, cf_param_constants *constants) {
   void *name, *text, *value;

@@ -43,9 +43,7 @@ static void add_text(cf_writing *out, const char *text) {
   cf_writing_add_bytes(out, "\"", 1);
 }
 
-/* --- values
- * ----------------------------------------------------------------------------------------------------------
- */
+/* --- values ----------------------------------------------------------------------------------- */
 
 /* As given; a function that was made and not read has a number only. */
 static void add_function(cf_writing *out, const cf_function *function) {
@@ -205,9 +203,7 @@ static void add_value(cf_writing *out, const cf_param *param, const void *member
   }
 }
 
-/* --- records
- * ---------------------------------------------------------------------------------------------------------
- */
+/* --- records ---------------------------------------------------------------------------------- */
 
 /* What is left out of a record, and how its first key is indented. */
 typedef enum cf_record_style { CF_RECORD_WHOLE, CF_RECORD_ENTRY, CF_RECORD_GIVEN } cf_record_style;

@@ -24,8 +24,7 @@ static cf_status fail(const cf_yaml *yaml, const cf_place place, const char *sen
   return cf_config_fail(yaml->config, (cf_about){place, NULL}, "%s", sentence);
 }
 
-/* --- places
- * ------------------------------------------------------------------------------------------------------ */
+/* --- places ----------------------------------------------------------------------------------- */
 
 static cf_place token_place(const cf_yaml *yaml, struct fy_token *token, const enum fy_node_style style) {
   const struct fy_mark *start = fy_token_start_mark(token), *end = fy_token_end_mark(token);
@@ -58,8 +57,7 @@ static cf_place mark_place(const cf_yaml *yaml, const int line, const int column
   return (cf_place){yaml->source, at, 1};
 }
 
-/* --- nodes
- * ------------------------------------------------------------------------------------------------------- */
+/* --- nodes ------------------------------------------------------------------------------------ */
 
 static cf_status convert(const cf_yaml *yaml, struct fy_node *from, cf_place near, int depth, cf_node **node);
 
@@ -160,8 +158,7 @@ static cf_status convert(const cf_yaml *yaml, struct fy_node *from, const cf_pla
   }
 }
 
-/* --- documents
- * --------------------------------------------------------------------------------------------------- */
+/* --- documents -------------------------------------------------------------------------------- */
 
 /* Messages of the library that say little, and what we say. */
 static const char *plainer(const char *message) {

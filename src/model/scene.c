@@ -106,7 +106,7 @@ cf_status cf_scene_explain(const char *key, char **text) {
   return cf_config_explain(&cf_scene_table, key, text);
 }
 
-/* --- names --------------------------------------------------------------------------------------------- */
+/* --- names ------------------------------------------------------------------------------------ */
 
 bool cf_scene_name_is_flux(const char *name) { return strcmp(name, "q") == 0 || strncmp(name, "q_", 2) == 0; }
 

@@ -5,7 +5,7 @@
  * cf_scene_read gives a resolved scene: what was left out has its default, fields.NAME.diffusion and
  * fields.NAME.walls are complete for every scalar, front_speed has been turned into k or tau, lists that go
  * by axis have one entry an axis, and everything that can be checked without a grid has been checked. So the
- * program reads scene->field.item[i].diffusion.k and never asks what was given.
+ * program reads scene->fields.item[i].diffusion.k and never asks what was given.
  *
  * Checks that need more (does dt suit the scheme? is there memory?) are made higher up and report at the
  * place of the key with cf_scene_fail_at.
@@ -21,7 +21,7 @@
 #include "base/param.h"
 #include "base/status.h"
 
-/* --- words: W(UPPER, as a scene writes it) ------------------------------------------------------------- */
+/* --- words: W(UPPER, as a scene writes it) ---------------------------------------------------- */
 
 #define CF_MODEL_WORDS(W)     W(TRACER, tracer)
 #define CF_SCHEME_WORDS(W)    W(DEFAULT, default) W(PAPER, paper) W(SDIRK2, sdirk2)
@@ -75,7 +75,7 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
 };
 #undef CF_SCENE_ENUM
 
-/* --- tables -------------------------------------------------------------------------------------------- */
+/* --- tables ----------------------------------------------------------------------------------- */
 
 #define CF_DOMAIN_TABLE(P, R)                                                                             \
   P(size, numbers, CF_REQUIRED, "m", "2..3 of (0, inf)",                                                  \
@@ -198,7 +198,7 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   R(record, solver, cf_scene_solver, "The linear solver")                                \
   R(record, output, cf_scene_output, "What is written, and how often")
 
-/* --- structs ------------------------------------------------------------------------------------------- */
+/* --- structs ---------------------------------------------------------------------------------- */
 
 typedef struct cf_scene_domain {
   CF_PARAM_MEMBERS(CF_DOMAIN_TABLE)
@@ -239,7 +239,7 @@ typedef struct cf_scene {
   struct cf_config *config; /* the places of the keys, and the memory of all texts and functions */
 } cf_scene;
 
-/* --- functions ----------------------------------------------------------------------------------------- */
+/* --- functions -------------------------------------------------------------------------------- */
 
 /* Reads, resolves and checks the scene at `path`; `set` holds `overrides` texts KEY=VALUE that go before what
  * the file says. CF_BAD_SCENE with the message to print (several lines) for everything that is wrong. */

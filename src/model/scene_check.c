@@ -15,8 +15,7 @@
 enum { KEY_MAX = 160, FRAMES_MAX = 999999 };
 #define CELLS_MAX 0x1p40
 
-/* --- axes
- * --------------------------------------------------------------------------------------------------- */
+/* --- axes ------------------------------------------------------------------------------------- */
 
 static cf_status check_count(const cf_scene *scene, const int count, const char *key) {
   if (count == scene->dim) return CF_OK;
@@ -36,8 +35,7 @@ cf_status cf_scene_check_axes(cf_scene *scene, cf_param_functions *functions, co
                           wanted, functions->count == 1 ? "is" : "are", functions->count);
 }
 
-/* --- domain and time
- * ------------------------------------------------------------------------------------------ */
+/* --- domain and time -------------------------------------------------------------------------- */
 
 static cf_status check_spacing(cf_scene *scene) {
   const cf_scene_domain *domain = &scene->domain;
@@ -78,8 +76,7 @@ static cf_status check_time(const cf_scene *scene) {
   return CF_OK;
 }
 
-/* --- names
- * ------------------------------------------------------------------------------------------------------ */
+/* --- names ------------------------------------------------------------------------------------ */
 
 static cf_status check_field_name(const cf_scene *scene, const char *key, const char *name) {
   const char *meant = NULL;
@@ -91,8 +88,7 @@ static cf_status check_field_name(const cf_scene *scene, const char *key, const 
   return cf_scene_fail_at(scene, key, "%s: there is no field %.60s", key, name);
 }
 
-/* --- sources
- * ----------------------------------------------------------------------------------------------------- */
+/* --- sources ---------------------------------------------------------------------------------- */
 
 /* A source under check, with its number for messages. */
 typedef struct cf_source_check {
@@ -181,8 +177,7 @@ static cf_status check_source(const cf_source_check *check) {
   return CF_OK;
 }
 
-/* --- output
- * -------------------------------------------------------------------------------------------------------- */
+/* --- output ----------------------------------------------------------------------------------- */
 
 static cf_status resolve_output_fields(cf_scene *scene) {
   cf_scene_output *output = &scene->output;
@@ -218,9 +213,7 @@ static cf_status resolve_preview(cf_scene *scene) {
   return CF_OK;
 }
 
-/* --- all
- * -------------------------------------------------------------------------------------------------------------
- */
+/* --- all -------------------------------------------------------------------------------------- */
 
 cf_status cf_scene_resolve(cf_scene *scene) {
   CF_TRY(resolve_domain(scene));

@@ -66,8 +66,7 @@ static cf_status resolve_own_diffusion(cf_scene *scene, cf_scene_field *field) {
   return CF_OK;
 }
 
-/* --- walls
- * -------------------------------------------------------------------------------------------------- */
+/* --- walls ------------------------------------------------------------------------------------ */
 
 static const char *side_name(const int axis, const int high) {
   static const char *const names[3][2] = {{"x-", "x+"}, {"y-", "y+"}, {"z-", "z+"}};
@@ -109,8 +108,7 @@ static cf_status check_walls(const cf_scene *scene, const char *path, const cf_p
   return CF_OK;
 }
 
-/* --- fields
- * -------------------------------------------------------------------------------------------------- */
+/* --- fields ----------------------------------------------------------------------------------- */
 
 /* One scalar, phi, where a scene names no fields. */
 static cf_status default_field(cf_scene *scene) {

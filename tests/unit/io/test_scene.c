@@ -72,7 +72,7 @@ static double at(const cf_function *function, const double x, const double t) {
   return cf_fn_at(&function->fn, x, 0.0, 0.0, t);
 }
 
-/* --- reading --------------------------------------------------------------------------------------------------- */
+/* --- reading ---------------------------------------------------------------------------------- */
 
 static void scene_values_are_read(void **state) {
   (void)state;
@@ -176,7 +176,7 @@ static void scene_folder_is_that_of_the_file(void **state) {
   cf_scene_destroy(s);
 }
 
-/* --- what is worked out ------------------------------------------------------------------------------------------ */
+/* --- what is worked out ----------------------------------------------------------------------- */
 
 static void scene_front_speed_stands_for_tau_or_k(void **state) {
   (void)state;
@@ -240,7 +240,7 @@ static void scene_source_finds_the_only_scalar(void **state) {
   cf_scene_destroy(s);
 }
 
-/* --- overrides --------------------------------------------------------------------------------------------------- */
+/* --- overrides -------------------------------------------------------------------------------- */
 
 static void scene_override_goes_before_the_file(void **state) {
   (void)state;
@@ -276,7 +276,7 @@ static void scene_last_override_counts(void **state) {
   cf_scene_destroy(s);
 }
 
-/* --- errors from elsewhere ------------------------------------------------------------------------------------------ */
+/* --- errors from elsewhere -------------------------------------------------------------------- */
 
 static void said_at(const cf_scene *scene, const char *key, const char *message) {
   assert_int_equal(cf_scene_fail_at(scene, key, "%s is no good", key), CF_BAD_SCENE);
@@ -305,7 +305,7 @@ static void scene_error_points_at_the_key(void **state) {
   cf_scene_destroy(s);
 }
 
-/* --- writing ---------------------------------------------------------------------------------------------------------- */
+/* --- writing ---------------------------------------------------------------------------------- */
 
 static void same_functions(const cf_param_functions *a, const cf_param_functions *b) {
   assert_int_equal(a->count, b->count);
@@ -416,7 +416,7 @@ static void scene_written_has_every_default(void **state) {
   cf_scene_destroy(s);
 }
 
-/* --- explaining ---------------------------------------------------------------------------------------------------- */
+/* --- explaining ------------------------------------------------------------------------------- */
 
 static void scene_explains_every_key(void **state) {
   (void)state;
@@ -445,7 +445,7 @@ static void scene_explains_a_key(void **state) {
   assert_null(text);
 }
 
-/* --- memory --------------------------------------------------------------------------------------------------------- */
+/* --- memory ----------------------------------------------------------------------------------- */
 
 static void scene_survives_every_failed_allocation(void **state) {
   (void)state;
