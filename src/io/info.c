@@ -123,16 +123,25 @@ static cf_status say_numbers(report *r, cf_hdf5 *h, const char *path, const char
   return s;
 }
 
+/* The unit stands at the array, or (faces of a checkpoint) at its group. */
+static void find_unit(cf_hdf5 *h, const char *path, char unit[CF_NAME_MAX]) {
+  cf_path group;
+  if (cf_hdf5_get_text(h, path, "unit", unit, CF_NAME_MAX) == CF_OK) return;
+  snprintf(group.text, sizeof group.text, "%s", path);
+  *strrchr(group.text, '/') = '\0';
+  if (cf_hdf5_get_text(h, group.text, "unit", unit, CF_NAME_MAX) != CF_OK) unit[0] = '\0';
+}
+
 /* Particles: components side by side, as if a field of one plane. */
 static cf_status say_particles(report *r, cf_hdf5 *h, const char *path, const char *name,
                                const cf_array *shape) {
   const int n[3] = {(int)CF_MAX(shape->n[1], 1), (int)shape->n[0], 1};
-  char unit[CF_NAME_MAX] = "";
+  char unit[CF_NAME_MAX];
   cf_real *values;
   facts a;
   if (shape->n[0] == 0) return say(r, "  %-16s no particles\n", name);
   if (shape->n[0] > INT32_MAX) return say(r, "  %-16s %" PRId64 " particles\n", name, shape->n[0]);
-  if (cf_hdf5_get_text(h, path, "unit", unit, sizeof unit) != CF_OK) unit[0] = '\0';
+  find_unit(h, path, unit);
   CF_TRY(CF_NEW(&values, (size_t)n[0] * (size_t)n[1]));
   cf_box b = {.dim = 2, .n = {n[0], n[1], 1}, .stride = {1, n[0], (ptrdiff_t)n[0] * n[1]}};
   const cf_array wanted = {CF_ELEMENT_REAL, shape->rank, {shape->n[0], shape->n[1]}};
@@ -145,9 +154,9 @@ static cf_status say_particles(report *r, cf_hdf5 *h, const char *path, const ch
 
 static cf_status say_components(report *r, cf_hdf5 *h, const char *path, const char *name,
                                 const cf_array *shape, const double weight) {
-  char unit[CF_NAME_MAX] = "", full[CF_NAME_MAX + 4];
+  char unit[CF_NAME_MAX], full[CF_NAME_MAX + 4];
   const int components = shape->rank == 4 ? (int)shape->n[3] : 1;
-  if (cf_hdf5_get_text(h, path, "unit", unit, sizeof unit) != CF_OK) unit[0] = '\0';
+  find_unit(h, path, unit);
   for (int c = 0; c < components; ++c) {
     facts a;
     CF_TRY(read_array(h, path, shape, c, &a));
