@@ -78,8 +78,10 @@ static cf_status check_time(const cf_scene *scene) {
 
 /* --- names ------------------------------------------------------------------------------------ */
 
+/* What a run can show: the fields of the scene, and the flow if there is one. */
 static cf_status check_field_name(const cf_scene *scene, const char *key, const char *name) {
   const char *meant = NULL;
+  if (scene->given.velocity && strncmp(key, "output.", 7) == 0 && strcmp(name, "velocity") == 0) return CF_OK;
   if (cf_scene_field_index(scene, name) >= 0 || cf_scene_flux_scalar(scene, name) >= 0) return CF_OK;
   for (int i = 0; i < scene->fields.count && meant == NULL; ++i)
     if (cf_param_distance(name, scene->fields.item[i].name) >= 0) meant = scene->fields.item[i].name;

@@ -51,6 +51,7 @@ typedef struct tracer {
   double through_walls; /* largest velocity that stood on an insulated wall */
   cf_face u;
   cf_advect *by_scheme[2]; /* made where needed: [CF_ADVECT_PPM], [CF_ADVECT_LINEAR] */
+  cf_cell work;            /* of the front filter */
   double *rows;
 } tracer;
 
@@ -223,6 +224,7 @@ static cf_status make(tracer *m, cf_registry *r) {
     index[m->count] = f;
     snprintf(m->scalar[m->count++].name, CF_NAME_MAX, "%s", scene->fields.item[f].name);
   }
+  CF_TRY(cf_cell_create(&m->work, &m->grid->box));
   for (int i = 0; i < m->count; ++i) CF_TRY(make_scalar(m, index[i], &m->scalar[i], r));
   CF_TRY(make_velocity(m, r));
   for (int i = 0; i < m->count; ++i) CF_TRY(check_walls(m, &m->scalar[i]));
@@ -239,6 +241,7 @@ static void tracer_destroy(void *model) {
     cf_face_destroy(&m->scalar[i].q, &m->grid->box);
   }
   cf_face_destroy(&m->u, &m->grid->box);
+  cf_cell_destroy(&m->work, &m->grid->box);
   for (int s = 0; s < 2; ++s) cf_advect_destroy(m->by_scheme[s]);
   cf_free(m->scalar);
   cf_free(m->rows);
@@ -323,12 +326,18 @@ static bool filtered(const scalar *s) {
   return s->scene->front_filter == CF_SCENE_FILTER_ON;
 }
 
+static void filter_fronts(const tracer *m, const scalar *s, const double dt) {
+  const double courant = cf_diffuse_speed_max(s->diffuse) * dt / m->grid->h;
+  const double nu = cf_front_strength(m->grid->box.dim, courant, 1);
+  cf_front_cell(m->grid, &s->walls, nu, s->phi, m->work);
+  cf_front_face(m->grid, &s->walls, nu, s->q, m->work);
+}
+
 static cf_status diffuse(tracer *m, scalar *s, const double t, const double dt, cf_step_report *report) {
   cf_solve_report one;
   CF_TRY(cf_diffuse_step(s->diffuse, t, dt, s->phi, s->q, &s->ledger, &one));
   cf_sources_hold_flux(s->sources, t + dt, s->q);
-  if (filtered(s))
-    CF_TRY(cf_front_filter(m->grid, &s->walls, cf_diffuse_speed_max(s->diffuse) * dt, s->phi, s->q));
+  if (filtered(s)) filter_fronts(m, s, dt);
   report->solve.iterations += one.iterations;
   report->solve.levels = one.levels;
   report->solve.residual = CF_MAX(report->solve.residual, one.residual);

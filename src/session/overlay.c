@@ -30,6 +30,38 @@ static void add_edge(cf_overlay *o, const double *apex, const double direction, 
   ++o->count;
 }
 
+/* The middle of what a source without a shape adds, and whether it is small beside the box: then it is as good as a
+ * point. */
+static bool centroid_of(const cf_sim *sim, const cf_fn *rate, double apex[2]) {
+  const cf_grid *g = &sim->grid;
+  double sum = 0, first[2] = {0, 0}, second[2] = {0, 0};
+  if (cf_fn_is_constant(rate)) return false;
+  for (int j = 0; j < g->box.n[1]; ++j)
+    for (int i = 0; i < g->box.n[0]; ++i) {
+      const double x[2] = {cf_grid_place(g, 0, i, 0), cf_grid_place(g, 1, j, 0)};
+      const double w = fabs(cf_fn_at(rate, x[0], x[1], 0, sim->time));
+      sum += w;
+      for (int a = 0; a < 2; ++a) first[a] += w * x[a], second[a] += w * x[a] * x[a];
+    }
+  bool small = sum > 0;
+  for (int a = 0; a < 2; ++a) {
+    apex[a] = first[a] / sum;
+    const double spread = sqrt(fmax(0, second[a] / sum - apex[a] * apex[a]));
+    small = small && spread < g->box.n[a] * g->h / 16;
+  }
+  return small;
+}
+
+/* Where a source is, if it is anywhere in particular. */
+static bool apex_of(const cf_sim *sim, const cf_scene_source *s, double apex[2]) {
+  if (!s->given.at && s->shape == CF_SCENE_SHAPE_EVERYWHERE)
+    return s->given.rate && centroid_of(sim, &s->rate.axis[0].fn, apex);
+  const double *middle = s->given.at ? s->at.value : s->center.value;
+  apex[0] = middle[0];
+  apex[1] = middle[1];
+  return true;
+}
+
 void cf_overlay_cones(const cf_sim *sim, const char *field, cf_overlay *o) {
   const cf_scene *scene = sim->scene;
   const int f = cf_scene_field_index(scene, field);
@@ -40,8 +72,8 @@ void cf_overlay_cones(const cf_sim *sim, const char *field, cf_overlay *o) {
   const double c = cf_wave_speed(d->k.fn.value / d->capacity.fn.value, d->tau, d->f_t);
   for (int i = 0; i < scene->sources.count && o->count + 2 <= CF_OVERLAY_MAX; ++i) {
     const cf_scene_source *s = &scene->sources.item[i];
-    if (strcmp(s->field, field) != 0 || (!s->given.at && s->shape == CF_SCENE_SHAPE_EVERYWHERE)) continue;
-    const double *apex = s->given.at ? s->at.value : s->center.value;
+    double apex[2];
+    if (strcmp(s->field, field) != 0 || !apex_of(sim, s, apex)) continue;
     const double u = velocity_at(scene, 0, apex), v = velocity_at(scene, 1, apex), speed = hypot(u, v);
     if (!(c > 0) || !isfinite(c) || !(speed > c)) continue;
     const double half = asin(c / speed), along = atan2(v, u),
