@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Making the hierarchy: every axis that still has the smallest spacing is halved (in a 512 x 4 box the short
- * axis is used up after two levels), until a line is left, which is solved directly.
+ * axis is used up after two levels), until a line or few cells are left, which are solved directly.
  */
 #include "solve/multigrid.h"
 
@@ -10,7 +10,6 @@
 
 #include "base/mem.h"
 #include "grid/sweep.h"
-#include "solve/line.h"
 #include "solve/pcg.h"
 #include "solve/transfer.h"
 
@@ -39,19 +38,25 @@ static void level_destroy(cf_level *l, const bool finest) {
   cf_free(l->rows);
 }
 
+static void coarsest_destroy(cf_helmholtz *A) {
+  for (int v = 0; v < 3 && A->coarse_level >= 0; ++v)
+    cf_cell_destroy(&A->coarse[v], &A->level[A->coarse_level].box);
+  A->coarse_level = -1;
+}
+
 void cf_helmholtz_destroy(cf_helmholtz *A) {
   if (A == NULL) return;
   cf_cell_destroy(&A->r, &A->grid.box);
   cf_cell_destroy(&A->p, &A->grid.box);
   cf_cell_destroy(&A->Ap, &A->grid.box);
   cf_cell_destroy(&A->z, &A->grid.box);
-  if (A->coarse_level >= 0)
-    for (int v = 0; v < 3; ++v) cf_cell_destroy(&A->coarse[v], &A->level[A->coarse_level].box);
+  coarsest_destroy(A);
   if (A->owns_alpha) cf_cell_destroy(&A->level[0].alpha_cell, &A->grid.box);
   if (A->owns_beta) cf_face_destroy(&A->level[0].beta, &A->grid.box);
   for (int l = 0; l < A->levels; ++l) level_destroy(&A->level[l], l == 0);
   cf_free(A->scratch);
   cf_free(A->line);
+  cf_direct_destroy(&A->direct);
   cf_free(A);
 }
 
@@ -101,14 +106,15 @@ static cf_status coarser_create(cf_helmholtz *A, cf_level *fine, const bool coar
   return CF_NEW(&l->rows, 2 * cf_box_rows(&l->box));
 }
 
+static bool solved_directly(const cf_level *l) { return cf_level_is_line(l) || cf_level_is_few(l); }
+
 static cf_status hierarchy_create(cf_helmholtz *A) {
   const cf_box *box = &A->grid.box;
   A->levels = 1;
   CF_TRY(finest_create(A, &A->level[0]));
   bool coarsened[3];
-  while (!cf_level_is_line(&A->level[A->levels - 1]) &&
-         axes_to_coarsen(&A->level[A->levels - 1], coarsened) && A->levels < CF_LEVELS_MAX &&
-         (A->wanted == 0 || A->levels < A->wanted)) {
+  while (!solved_directly(&A->level[A->levels - 1]) && axes_to_coarsen(&A->level[A->levels - 1], coarsened) &&
+         A->levels < CF_LEVELS_MAX && (A->wanted == 0 || A->levels < A->wanted)) {
     ++A->levels; /* counted first, so that a failure within frees it */
     CF_TRY(coarser_create(A, &A->level[A->levels - 2], coarsened, &A->level[A->levels - 1]));
   }
@@ -116,6 +122,7 @@ static cf_status hierarchy_create(cf_helmholtz *A) {
   CF_TRY(cf_cell_create(&A->p, box));
   CF_TRY(cf_cell_create(&A->Ap, box));
   CF_TRY(cf_cell_create(&A->z, box));
+  CF_TRY(cf_direct_create(&A->direct));
   CF_TRY(CF_NEW(&A->line, 5 * CF_MAX(box->n[0], CF_MAX(box->n[1], box->n[2]))));
   return CF_NEW(&A->scratch, (ptrdiff_t)A->grid.threads * (box->n[0] + 2));
 }
@@ -223,13 +230,21 @@ static bool has_held_wall(const cf_helmholtz *A) {
   return false;
 }
 
-static cf_status shape_coarsest(cf_helmholtz *A) {
+/* What solves the coarsest level: an elimination, or work for conjugate gradients. */
+static cf_status coarsest_create(cf_helmholtz *A) {
   const int coarsest = A->depth - 1;
-  if (A->coarse_level == coarsest || coarsest == 0) return CF_OK;
-  for (int v = 0; v < 3 && A->coarse_level >= 0; ++v)
-    cf_cell_destroy(&A->coarse[v], &A->level[A->coarse_level].box);
+  cf_level *l = &A->level[coarsest];
+  if (cf_level_is_few(l) && !cf_level_is_line(l)) cf_direct_factor(l, &A->direct);
+  if (A->coarse_level == coarsest || coarsest == 0 || solved_directly(l)) return CF_OK;
+  coarsest_destroy(A);
   A->coarse_level = coarsest;
-  for (int v = 0; v < 3; ++v) CF_TRY(cf_cell_create(&A->coarse[v], &A->level[coarsest].box));
+  for (int v = 0; v < 3; ++v) {
+    const cf_status s = cf_cell_create(&A->coarse[v], &l->box);
+    if (s != CF_OK) {
+      coarsest_destroy(A);
+      return s;
+    }
+  }
   return CF_OK;
 }
 
@@ -244,7 +259,7 @@ cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
     set_constant(A, c);
   const bool no_alpha = c->alpha_at == NULL ? c->alpha == 0 : cf_level_sum(&A->level[0], *c->alpha_at) == 0;
   A->singular = no_alpha && !has_held_wall(A);
-  return shape_coarsest(A);
+  return coarsest_create(A);
 }
 
 /* --- the cycle ---------------------------------------------------------------------------------------- */
@@ -257,8 +272,12 @@ static cf_real relaxation(const cf_level *l) {
 
 static void cycle(cf_helmholtz *A, const int at, const cf_cell b, const cf_cell x) {
   cf_level *l = &A->level[at];
-  if (cf_level_is_line(l)) {
-    cf_level_solve_line(l, A->singular, b, A->line, x);
+  if (solved_directly(l)) {
+    if (cf_level_is_line(l))
+      cf_level_solve_line(l, b, A->line, x);
+    else
+      cf_direct_solve(l, &A->direct, b, x);
+    if (A->singular) cf_level_remove_mean(l, x);
     return;
   }
   cf_level_clear(l, x);

@@ -5,6 +5,7 @@
 #ifndef CF_SOLVE_MULTIGRID_H
 #define CF_SOLVE_MULTIGRID_H
 
+#include "solve/direct.h"
 #include "solve/helmholtz.h"
 #include "solve/level.h"
 
@@ -23,7 +24,8 @@ struct cf_helmholtz {
   cf_cell coarse[3];          /* the same on the coarsest */
   int coarse_level;           /* for which `coarse` is shaped; -1: none yet */
   cf_real *scratch;           /* rows for the transfers, one a thread */
-  double *line;               /* work of the coarsest level's direct solution */
+  cf_direct direct;           /* the coarsest level where it has few cells */
+  double *line;               /* work of the coarsest level where it is a line */
 };
 
 /* z = one V-cycle on A z = r from z = 0. */

@@ -213,7 +213,8 @@ void cf_level_prolong(const cf_level *coarse, const cf_cell x_c, const cf_level 
 /* The coefficient between the centres of the two coarse cells that meet in fine face i (at p) of an axis: in
  * series, the face itself and on either side the part of the next face that lies before the coarse centre. A
  * closed face there cuts off a piece of a coarse cell, no more; closed in the middle is closed. */
-static double in_series(const cf_level *fine, const cf_level *coarse, const int axis, const int i, const ptrdiff_t p) {
+static double in_series(const cf_level *fine, const cf_level *coarse, const int axis, const int i,
+                        const ptrdiff_t p) {
   const cf_axis *f = &fine->axis[axis];
   const cf_real *beta = fine->beta.at[axis];
   const double own = (double)beta[p];

@@ -25,7 +25,7 @@ static inline int table_split(char *line, char out[][48], const size_t width) {
   for (char *at = line; at != NULL && n < TABLE_COLUMNS; ++n) {
     char *comma = strchr(at, ',');
     if (comma != NULL) *comma = '\0';
-    snprintf(out[n], width, "%s", at);
+    snprintf(out[n], width, "%.*s", (int)width - 1, at);
     at = comma != NULL ? comma + 1 : NULL;
   }
   return n;
