@@ -101,6 +101,7 @@ double cf_advect_substeps(const cf_advect *a, const double dt) {
 int64_t *cf_advect_parity(cf_advect *a) { return &a->parity; }
 
 cf_status cf_advect_begin(cf_advect *a, const double t, const double dt) {
+  if (!(dt >= 0)) return cf_fail(CF_BAD_ARGUMENT, "a step of %g s: must be >= 0", dt);
   const double substeps = cf_advect_substeps(a, dt);
   if (!(substeps <= CF_ADVECT_SUBSTEPS_MAX))
     return cf_fail(CF_OVER_LIMIT,

@@ -63,7 +63,7 @@ double cf_advect_rate(const cf_advect *a);
 double cf_advect_substeps(const cf_advect *a, double dt);
 
 /* Fixes time, length and substeps of the moves that follow, and their order of axes.
- * CF_OVER_LIMIT: the step would need more than CF_ADVECT_SUBSTEPS_MAX substeps. */
+ * CF_BAD_ARGUMENT: dt < 0. CF_OVER_LIMIT: the step would need more than CF_ADVECT_SUBSTEPS_MAX substeps. */
 #define CF_ADVECT_SUBSTEPS_MAX 100000
 cf_status cf_advect_begin(cf_advect *a, double t, double dt);
 

@@ -89,6 +89,8 @@ static void advect_divides_long_steps(void **state) {
   OK(cf_advect_begin(s.advect, 0, step_of(&s, 2.5)));
   assert_int_equal(*cf_advect_parity(s.advect), 3);
   assert_int_equal(cf_advect_begin(s.advect, 0, step_of(&s, 1e7)), CF_OVER_LIMIT);
+  assert_int_equal(cf_advect_begin(s.advect, 0, -1), CF_BAD_ARGUMENT);
+  assert_int_equal(cf_advect_begin(s.advect, 0, NAN), CF_BAD_ARGUMENT);
   scene_close(&s);
 }
 
