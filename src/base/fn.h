@@ -1,22 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * A function of place and time, W(x, y, z, t): what a scene gives as a number or as an expression.
+ * Functions of place and time, W(x, y, z, t): what a scene gives as a number or as an expression.
  * Physics knows only this; where the values come from (a constant, a parsed expression, a C function
  * of the caller) is the business of whoever filled it in.
  */
 #ifndef CF_BASE_FN_H
 #define CF_BASE_FN_H
 
-#include <stdbool.h>
-
-typedef struct cf_fn {
-  /* out[i] = W(x[i], y[i], z[i], t) for i in 0..n-1. NULL: the function is the constant `value`. */
-  void (*eval)(const void *context, int n, const double *x, const double *y, const double *z, double t,
-               double *out);
-  const void *context;
-  double value;
-  bool in_time; /* depends on t: sample again at every time */
-} cf_fn;
+#include "cattaneo.h"
 
 static inline cf_fn cf_fn_constant(const double value) { return (cf_fn){.value = value}; }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Two kinds of memory. Small zeroed blocks for handles and tables (cf_new), and pages for fields:
+ * Two kinds of memory. Small zeroed blocks for handles and tables (freed with cf_free), and pages for fields:
  * address space reserved at once, memory committed by the kernel when a page is first touched and
  * zero until then, so a large grid with a small active part costs what is touched.
  *
@@ -22,8 +22,6 @@ cf_status cf_new_array(void **block, size_t count, size_t size);
 
 /* A zero-terminated copy of `length` bytes of text. */
 cf_status cf_new_text(char **copy, const char *text, size_t length);
-
-void cf_free(void *block); /* NULL is fine */
 
 /* Reserves zeroed pages. `dense` asks the kernel for huge pages, otherwise they are forbidden. */
 cf_status cf_pages_reserve(void **pages, size_t bytes, bool dense);

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * cf_real is the precision of the state: double, or float where CF_SINGLE is defined. Sums, norms,
- * time and parameters are double in both builds.
+ * What goes with cf_real (cattaneo.h), the precision of the state. Sums, norms, time and parameters are
+ * double in both builds.
  */
 #ifndef CF_BASE_REAL_H
 #define CF_BASE_REAL_H
 
 #include <float.h>
 
+#include "cattaneo.h"
+
 #ifdef CF_SINGLE
-typedef float cf_real;
 #define CF_REAL_EPSILON FLT_EPSILON
 #define CF_PRECISION    "single"
 #else
-typedef double cf_real;
 #define CF_REAL_EPSILON DBL_EPSILON
 #define CF_PRECISION    "double"
 #endif

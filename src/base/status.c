@@ -28,6 +28,9 @@ cf_status cf_fail(const cf_status code, const char *format, ...) {
 
 const char *cf_status_sentence(void) { return sentence; }
 
-const char *cf_status_name(const cf_status code) { return list[code].name; }
+/* A program may hand in what is no code at all. */
+static bool known(const cf_status code) { return (unsigned)code < sizeof list / sizeof *list; }
 
-int cf_status_exit_code(const cf_status code) { return list[code].exit_code; }
+const char *cf_status_name(const cf_status code) { return known(code) ? list[code].name : "unknown"; }
+
+int cf_status_exit_code(const cf_status code) { return known(code) ? list[code].exit_code : 1; }

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A box of cells in space: spacing, origin, and how many threads sweep it.
- *
- * Cells are squares or cubes of width h. Cell (i, j, k) is centred at origin + (i + 1/2, j + 1/2, k + 1/2) h;
- * the low face of axis a lies half a cell below it on that axis.
+ * Places on a cf_grid (cattaneo.h: a box of cells in space), and functions sampled there.
  */
 #ifndef CF_GRID_GRID_H
 #define CF_GRID_GRID_H
@@ -13,16 +10,6 @@
 
 /* Ghost cells that every field of a model carries: what the widest stencil (PPM, WENO5) reaches. */
 #define CF_HALO 3
-
-typedef struct cf_grid {
-  cf_box box;
-  double h;         /* m */
-  double origin[3]; /* lower corner, m */
-  int threads;      /* at least 1 */
-} cf_grid;
-
-/* `cells` and `origin` have dim entries read. CF_BAD_ARGUMENT: sizes or spacing that make no sense. */
-cf_status cf_grid_init(cf_grid *g, int dim, const int *cells, double h, const double *origin);
 
 /* The volume of a cell, h^dim. */
 double cf_grid_volume(const cf_grid *g);

@@ -14,8 +14,6 @@
 #include "grid/field.h"
 #include "grid/grid.h"
 
-#define CF_NAME_MAX 64
-
 typedef enum cf_kind {
   CF_KIND_CELL,
   CF_KIND_FACE,

@@ -33,7 +33,7 @@ static int characters(const char *text, const size_t length) {
   return n;
 }
 
-static cf_line line_of(const cf_source *source, const cf_place place) {
+static cf_line line_of(const cf_config_source *source, const cf_place place) {
   size_t at = CF_MIN(place.at, source->length);
   /* An error at the end of the file belongs to the last line that has something on it. */
   while (at > 0 && at == source->length && strchr(" \n\r", source->text[at - 1]) != NULL &&
@@ -87,7 +87,7 @@ static void draw(const cf_line *line, const char *before, char *drawn, const siz
 cf_status cf_config_vfail(const cf_config *config, const cf_about about, const char *format, va_list values) {
   char sentence[SENTENCE_SHOWN + 1], drawn[2 * LINE_SHOWN + UNDERLINE_MAX + 220], where[PATH_SHOWN + 40],
       more[120] = "";
-  const cf_source *source = &config->source[about.place.source];
+  const cf_config_source *source = &config->source[about.place.source];
   const size_t name = strlen(source->name);
   const char *shown = source->name + (name > PATH_SHOWN ? name - PATH_SHOWN : 0);
   vsnprintf(sentence, sizeof sentence, format, values);

@@ -55,7 +55,7 @@ static cf_status read_file(cf_config *config, const char *path) {
 /* --- open ------------------------------------------------------------------------------------- */
 
 static cf_status check_text(const cf_config *config, const int source) {
-  const cf_source *s = &config->source[source];
+  const cf_config_source *s = &config->source[source];
   const ptrdiff_t bad = cf_text_bad_byte(s->text, s->length);
   if (bad < 0) return CF_OK;
   int line = 1;
@@ -80,7 +80,7 @@ static cf_status keep_sources(cf_config *config, const char *path, const cf_over
   CF_TRY(keep_paths(config, path));
   config->source[0].name = config->path;
   for (int i = 0; i < overrides->count; ++i) {
-    cf_source *s = &config->source[i + 1];
+    cf_config_source *s = &config->source[i + 1];
     const size_t length = strlen(overrides->set[i]);
     CF_TRY(cf_config_copy(config, &s->text, overrides->set[i], length));
     s->name = "--set";

@@ -159,7 +159,7 @@ static void replace_child(cf_node *parent, const cf_node *old, cf_node *fresh) {
 }
 
 static cf_status value_node(cf_config *config, const int source, const size_t from, cf_node **node) {
-  const cf_source *s = &config->source[source];
+  const cf_config_source *s = &config->source[source];
   const char *value = s->text + from;
   if (*value != '\0' && strchr("[{\"'", *value) != NULL) return cf_yaml_parse(config, source, from, node);
   size_t length = s->length - from;
@@ -170,7 +170,7 @@ static cf_status value_node(cf_config *config, const int source, const size_t fr
 
 /* The entry of `parent` named by a part of the key; a map gets a new one where it has none. */
 static cf_status entry(cf_config *config, cf_node *parent, const cf_place part, cf_node **child) {
-  const cf_source *s = &config->source[part.source];
+  const cf_config_source *s = &config->source[part.source];
   const char *name = s->text + part.at;
   const cf_about about = {part, NULL};
   if (parent->kind == CF_NODE_SCALAR && parent->text[0] == '\0') parent->kind = CF_NODE_MAP;
@@ -218,7 +218,7 @@ static size_t key_length(const char *text) {
 }
 
 cf_status cf_override_apply(cf_config *config, const int source) {
-  const cf_source *s = &config->source[source];
+  const cf_config_source *s = &config->source[source];
   const cf_place whole = {source, 0, CF_MAX(s->length, 1u)};
   const size_t equals = key_length(s->text);
   if (equals == 0)

@@ -35,14 +35,14 @@ typedef struct cf_node {
   struct cf_node *first, *last, *next;
 } cf_node;
 
-typedef struct cf_source {
+typedef struct cf_config_source {
   const char *name, *text;
   size_t length;
-} cf_source;
+} cf_config_source;
 
 struct cf_config {
   const char *path, *folder;
-  cf_source *source;
+  cf_config_source *source;
   int sources;
   int nodes; /* made so far, against CF_SCENE_NODES */
   cf_node *root;

@@ -47,7 +47,7 @@ static cf_place token_place(const cf_yaml *yaml, struct fy_token *token, const e
 
 /* The byte at a line and column (both from 1, columns in characters) of what the library was given. */
 static cf_place mark_place(const cf_yaml *yaml, const int line, const int column) {
-  const cf_source *s = &yaml->config->source[yaml->source];
+  const cf_config_source *s = &yaml->config->source[yaml->source];
   size_t at = yaml->from;
   for (int l = 1; l < line && at < s->length; ++at)
     if (s->text[at] == '\n') ++l;

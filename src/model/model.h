@@ -17,12 +17,6 @@ typedef struct cf_step_report {
   char warning[256]; /* "" or a sentence that the log should have (once) */
 } cf_step_report;
 
-/* A column of metrics.csv beside step, time, dt, iterations, residual. */
-typedef struct cf_metric {
-  char name[CF_NAME_MAX];
-} cf_metric;
-#define CF_METRICS_MAX 256
-
 typedef struct cf_model {
   const char *name, *summary;
 

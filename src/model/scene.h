@@ -20,6 +20,7 @@
 
 #include "base/param.h"
 #include "base/status.h"
+#include "cattaneo.h"
 
 /* --- words: W(UPPER, as a scene writes it) ---------------------------------------------------- */
 
@@ -231,20 +232,15 @@ typedef struct cf_scene_output {
   CF_PARAM_MEMBERS(CF_OUTPUT_TABLE)
 } cf_scene_output;
 
-typedef struct cf_scene {
+struct cf_scene {
   CF_PARAM_MEMBERS(CF_SCENE_TABLE)
   /* worked out */
   int dim;                  /* 2 or 3 */
   double spacing;           /* h, the same on all axes */
   struct cf_config *config; /* the places of the keys, and the memory of all texts and functions */
-} cf_scene;
+};
 
 /* --- functions -------------------------------------------------------------------------------- */
-
-/* Reads, resolves and checks the scene at `path`; `set` holds `overrides` texts KEY=VALUE that go before what
- * the file says. CF_BAD_SCENE with the message to print (several lines) for everything that is wrong. */
-cf_status cf_scene_read(cf_scene **scene, const char *path, int overrides, const char *const *set);
-void cf_scene_destroy(cf_scene *scene); /* NULL is fine */
 
 /* The path as given, and the folder of the file: paths in a scene are relative to it ("." at least). */
 const char *cf_scene_path(const cf_scene *scene);
@@ -261,11 +257,6 @@ bool cf_scene_has(const cf_scene *scene, const char *key);
 /* The resolved scene as YAML, every default filled in; read again it gives the same scene. cf_free the text.
  */
 cf_status cf_scene_write(const cf_scene *scene, char **text);
-
-/* The page on `key` ("diffusion.k", "fields.NAME.initial", "diffusion"), or on every key if it is NULL.
- * cf_free the text. CF_BAD_USAGE for a key that does not exist; the sentence says which may have been meant.
- */
-cf_status cf_scene_explain(const char *key, char **text);
 
 /* A name that starts with q_, or is q, is that of a flux. */
 bool cf_scene_name_is_flux(const char *name);

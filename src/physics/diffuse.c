@@ -1,5 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
+ * One implicit stage of length d serves every scheme: with m = tau/(tau + d), what is left of a flux after d,
+ *
+ *     beta = d (1 - m + F_T m) k,     (C - div beta grad) phi~ = C phi* - d m div q* + d C W               (17)
+ *     q    = m q* - (1 - m)(1 - F_T) k grad phi~                                                           (18)
+ *     phi  = phi* - (d/C) div(q - F_T k grad phi~) + d W
+ *
+ * and the last line (in place of phi = phi~) keeps sum C phi to round-off whatever the solver's tolerance.
+ *
+ *   CF_DIFFUSE_PAPER   one stage of backward Euler, W taken at the old time, phi = phi~.
+ *   CF_DIFFUSE_SDIRK2  two stages of g dt, g = 1 - 1/sqrt(2), the second from -sqrt(2) y + (1 + sqrt(2)) Y1
+ *                      (Alexander 1977): second order, L-stable, no history.
+ *
+ * k lives on faces: the harmonic mean of its cells, the cell's own on a held wall.
+ * Not done here: advection, the front filter, explicit schemes.
+ *
  * A stage in four sweeps:
  *
  *     right_side   b = C phi - d m div q + d C W (+ held walls)

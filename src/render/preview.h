@@ -29,7 +29,7 @@ typedef struct cf_polyline {
   const char *label; /* written near its last visible point; NULL: none */
 } cf_polyline;
 
-typedef enum cf_view { CF_VIEW_SLICE, CF_VIEW_MEAN } cf_view;
+typedef enum cf_preview_view { CF_VIEW_SLICE, CF_VIEW_MEAN } cf_preview_view;
 
 typedef struct cf_preview {
   const char *title; /* NULL: none */
@@ -40,7 +40,7 @@ typedef struct cf_preview {
   double low, high;
   int size;     /* pixels of the longer side; 0: 900 */
   bool cells;   /* show every cell as a square; else smooth in between */
-  cf_view view; /* 3D only */
+  cf_preview_view view; /* 3D only */
   int axis;     /* 3D only: the axis looked along, 0..2; 3: none given, z */
   int lines;
   const cf_polyline *line;
