@@ -172,12 +172,14 @@ cf_status cf_plane_resample(const cf_plane *p, const int width, const int height
 
 /* --- the range -------------------------------------------------------------------------------------------------- */
 
-#define BINS   8192
+#define BINS   4096
 #define BEYOND 0.005 /* of the values may lie beyond an end of the colours */
 
 typedef struct spread {
   double min, max; /* of the finite values; min > max if there are none */
   double count;
+  double low, high;    /* the ends, drawn in */
+  double below, above; /* values beyond them */
   double bins[BINS];
 } spread;
 
@@ -191,21 +193,43 @@ static void find_ends(spread *s, const cf_plane *p) {
 }
 
 static void count_bins(spread *s, const cf_plane *p) {
-  const double span = s->max - s->min;
-  for (size_t i = 0; i < (size_t)p->n[0] * (size_t)p->n[1]; ++i)
-    if (isfinite(p->at[i])) ++s->bins[CF_MIN((int)((p->at[i] - s->min) / span * BINS), BINS - 1)];
+  const double span = s->high - s->low;
+  for (size_t i = 0; i < (size_t)p->n[0] * (size_t)p->n[1]; ++i) {
+    const double v = p->at[i];
+    if (!isfinite(v)) continue;
+    if (v < s->low)
+      ++s->below;
+    else if (v > s->high)
+      ++s->above;
+    else
+      ++s->bins[CF_MIN((int)((v - s->low) / span * BINS), BINS - 1)];
+  }
 }
 
-/* Draws the ends in to the quantiles, unless nothing but the odd cell has a value at all. */
-static void draw_in(spread *s) {
-  const double span = s->max - s->min, width = span / BINS;
-  double below = 0, above = 0;
+/* Draws the ends in as far as the quantiles allow; how many bins are left between them. */
+static int draw_in_once(spread *s, const int planes, const cf_plane *plane) {
+  const double width = (s->high - s->low) / BINS;
   int low = 0, high = BINS - 1;
-  while (low < BINS - 1 && below + s->bins[low] <= BEYOND * s->count) below += s->bins[low++];
-  while (high > 0 && above + s->bins[high] <= BEYOND * s->count) above += s->bins[high--];
-  if (high - low < 4) return;
-  s->max = s->max - (BINS - 1 - high) * width;
-  s->min = s->min + low * width;
+  memset(s->bins, 0, sizeof s->bins);
+  s->below = s->above = 0;
+  for (int p = 0; p < planes; ++p) count_bins(s, &plane[p]);
+  while (low < BINS - 1 && s->below + s->bins[low] <= BEYOND * s->count) s->below += s->bins[low++];
+  while (high > low && s->above + s->bins[high] <= BEYOND * s->count) s->above += s->bins[high--];
+  s->high -= (BINS - 1 - high) * width;
+  s->low += low * width;
+  return high - low + 1;
+}
+
+/* A few values far off leave all others in one bin: then these are looked at more closely. If they are all the
+ * same, the few are what there is to see. */
+static void draw_in(spread *s, const int planes, const cf_plane *plane) {
+  const double span = s->max - s->min;
+  s->low = s->min, s->high = s->max;
+  while (draw_in_once(s, planes, plane) < BINS / 64) {
+    if (s->high - s->low > 1e-9 * span) continue;
+    s->low = s->min, s->high = s->max;
+    return;
+  }
 }
 
 /* The ends as the rule has them. */
@@ -235,11 +259,9 @@ cf_status cf_plane_scale(cf_scale *s, const int planes, const cf_plane *plane, c
   all->min = INFINITY, all->max = -INFINITY;
   for (int p = 0; p < planes; ++p) find_ends(all, &plane[p]);
   const double least = all->min, largest = all->max;
-  if (all->min < all->max && !given_range(how)) {
-    for (int p = 0; p < planes; ++p) count_bins(all, &plane[p]);
-    draw_in(all);
-  }
-  settle_range(s, given_range(how) ? how->low : all->min, given_range(how) ? how->high : all->max);
+  all->low = least, all->high = largest;
+  if (least < largest && isfinite(largest - least) && !given_range(how)) draw_in(all, planes, plane);
+  settle_range(s, given_range(how) ? how->low : all->low, given_range(how) ? how->high : all->high);
   if (given_range(how)) s->low = how->low, s->high = how->high;
   const double slack = 1e-6 * (s->high - s->low);
   s->below = least < s->low - slack;
