@@ -195,6 +195,32 @@ static void advect_lets_in_what_the_wall_says_at_the_time(void **state) {
   assert_true(coarse / fine > 2.8);
 }
 
+/* Traced over a step in which half the box is replaced: what came in is the wall's value, the rest has moved. */
+static void linear_tracing_lets_in_what_the_wall_says(void **state) {
+  (void)state;
+  const int cells[2] = {16, 8};
+  scene s;
+  scene_open_scheme(&s, 2, cells, walls_all(CF_WALL_INSULATED), CF_ADVECT_LINEAR);
+  const cf_box *b = &s.grid.box;
+  for (int kind = 0; kind < 2; ++kind) {
+    s.walls.kind[0][0] = kind == 0 ? CF_WALL_VALUE : CF_WALL_OPEN;
+    s.walls.kind[0][1] = CF_WALL_OPEN;
+    s.walls.value[0][0] = cf_fn_constant(3);
+    for (int j = 0; j < 8; ++j)
+      for (int i = 0; i <= 16; ++i) {
+        s.u.at[0][cf_box_at(b, i, j, 0)] = 1;
+        if (i < 16) s.phi.at[cf_box_at(b, i, j, 0)] = (cf_real)i;
+      }
+    OK(cf_advect_set_velocity(s.advect, s.u, &s.walls));
+    move_cells(&s, 0, 0.5, NULL);
+    for (int i = 0; i < 16; ++i) {
+      const double wanted = i < 8 ? (kind == 0 ? 3 : 0) : i - 8;
+      assert_true(fabs((double)s.phi.at[cf_box_at(b, i, 3, 0)] - wanted) < 20 * EPS);
+    }
+  }
+  scene_close(&s);
+}
+
 static void advect_refuses_what_it_cannot_do(void **state) {
   (void)state;
   scene s;
@@ -241,6 +267,7 @@ int main(void) {
       cmocka_unit_test(advect_is_linear_in_a_f_plus_b),
       cmocka_unit_test(advect_balances_what_passes_through_walls),
       cmocka_unit_test(advect_lets_in_what_the_wall_says_at_the_time),
+      cmocka_unit_test(linear_tracing_lets_in_what_the_wall_says),
       cmocka_unit_test(advect_refuses_what_it_cannot_do),
       cmocka_unit_test(advect_frees_what_it_took_when_memory_runs_out),
   };
