@@ -8,7 +8,7 @@
 #include "stencil/regime.h"
 
 #define EDGE_COLOUR \
-  (cf_colour) { 40, 110, 235 }
+  (cf_colour) { 240, 120, 20 }
 
 static double velocity_at(const cf_scene *scene, const int axis, const double *x) {
   const cf_function *f = &scene->velocity.axis[scene->velocity.count > 1 ? axis : 0];
@@ -69,7 +69,7 @@ void cf_overlay_cones(const cf_sim *sim, const char *field, cf_overlay *o) {
   if (scene->dim != 2 || f < 0 || sim->time == 0) return;
   const cf_scene_diffusion *d = &scene->fields.item[f].diffusion;
   if (!cf_fn_is_constant(&d->k.fn) || !cf_fn_is_constant(&d->capacity.fn)) return;
-  const double c = cf_wave_speed(d->k.fn.value / d->capacity.fn.value, d->tau, d->f_t);
+  const double c = cf_regime_speed(d->k.fn.value / d->capacity.fn.value, d->tau, d->f_t);
   for (int i = 0; i < scene->sources.count && o->count + 2 <= CF_OVERLAY_MAX; ++i) {
     const cf_scene_source *s = &scene->sources.item[i];
     double apex[2];
