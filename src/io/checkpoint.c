@@ -127,18 +127,22 @@ static cf_status prune(const char *folder, const int64_t step, const int keep) {
   return CF_OK;
 }
 
-cf_status cf_checkpoint_write(const char *folder, const cf_registry *r, const cf_stamp *stamp,
-                              const int keep) {
-  cf_path path;
+cf_status cf_checkpoint_write_to(const char *path, const cf_registry *r, const cf_stamp *stamp) {
   cf_head head;
   int arrays = 0;
   CF_TRY(check_names(r));
-  CF_TRY(cf_path_make(&path, "%s/checkpoint_%06" PRId64 ".h5", folder, stamp->step));
   for (int e = 0; e < r->count; ++e) arrays += r->entry[e].kind == CF_KIND_FACE ? r->grid->box.dim : 1;
   CF_TRY(cf_head_create(&head, arrays));
-  const cf_status s = write_file(path.text, r, stamp, &head);
+  const cf_status s = write_file(path, r, stamp, &head);
   cf_head_destroy(&head);
-  CF_TRY(s);
+  return s;
+}
+
+cf_status cf_checkpoint_write(const char *folder, const cf_registry *r, const cf_stamp *stamp,
+                              const int keep) {
+  cf_path path;
+  CF_TRY(cf_path_make(&path, "%s/checkpoint_%06" PRId64 ".h5", folder, stamp->step));
+  CF_TRY(cf_checkpoint_write_to(path.text, r, stamp));
   return prune(folder, stamp->step, keep);
 }
 

@@ -25,6 +25,9 @@
  * were. */
 cf_status cf_checkpoint_write(const char *folder, const cf_registry *r, const cf_stamp *stamp, int keep);
 
+/* The same into a file of any name, and nothing is removed. */
+cf_status cf_checkpoint_write_to(const char *path, const cf_registry *r, const cf_stamp *stamp);
+
 /* Particle arrays belong to the model: it makes room for `count` particles in the set of `entry` and sets its
  * count. */
 typedef struct cf_checkpoint_room {

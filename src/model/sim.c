@@ -1,4 +1,8 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ *
+ * The clock: which times are frames, how long the next step is, and what is checked after it. What a step does is
+ * the model's.
+ */
 #include "model/sim.h"
 
 #include <math.h>
@@ -29,6 +33,7 @@ static cf_status create(cf_sim *sim, const int threads) {
 
 cf_status cf_sim_create(cf_sim **sim, const cf_scene *scene, const int threads) {
   *sim = NULL;
+  if (threads < 1) return cf_fail(CF_BAD_ARGUMENT, "%d threads: must be at least 1", threads);
   cf_sim *fresh;
   CF_TRY(CF_NEW(&fresh, 1));
   fresh->scene = scene;
@@ -71,6 +76,9 @@ double cf_sim_frame_time(const cf_sim *sim, const int64_t i) {
 }
 
 bool cf_sim_finished(const cf_sim *sim) { return sim->time >= sim->end; }
+double cf_sim_time(const cf_sim *sim) { return sim->time; }
+double cf_sim_end(const cf_sim *sim) { return sim->end; }
+int64_t cf_sim_step_count(const cf_sim *sim) { return sim->step; }
 
 /* --- a step -----------------------------------------------------------------------------------------------
  */
@@ -89,28 +97,38 @@ static cf_status check_finite(const cf_sim *sim) {
   return CF_OK;
 }
 
-static cf_status check_converged(const cf_sim *sim) {
+static cf_status check_converged(cf_sim *sim) {
   const cf_solve_report *solve = &sim->report.solve;
-  if (solve->converged || sim->scene->solver.on_stall != CF_SCENE_STALL_STOP) return CF_OK;
-  return cf_fail(
-      CF_NOT_CONVERGED,
-      "the solver stopped at a residual of %.3g after %d iterations in step %lld (t = %g s), above "
-      "solver.tolerance = %g: raise the tolerance or solver.max_iterations, or take a smaller dt",
-      solve->residual, solve->iterations, (long long)sim->step, sim->time, sim->scene->solver.tolerance);
+  if (solve->converged) return CF_OK;
+  char why[CF_SENTENCE_MAX];
+  snprintf(why, sizeof why,
+           "the solver stopped at a residual of %.3g after %d iterations in step %lld (t = %g s), above "
+           "solver.tolerance = %g: raise the tolerance or solver.max_iterations, or take a smaller dt",
+           solve->residual, solve->iterations, (long long)sim->step, sim->time, sim->scene->solver.tolerance);
+  if (sim->scene->solver.on_stall == CF_SCENE_STALL_STOP) return cf_fail(CF_NOT_CONVERGED, "%s", why);
+  if (sim->warning[0] == '\0') snprintf(sim->warning, sizeof sim->warning, "%s", why);
+  return CF_OK;
 }
 
-cf_status cf_sim_step(cf_sim *sim, bool *on_frame) {
+static cf_status make_step(cf_sim *sim, const double t, const double dt) {
+  memset(&sim->report, 0, sizeof sim->report);
+  sim->report.solve.converged = true;
+  CF_TRY(sim->model->step(sim->state, t, dt, &sim->report));
+  snprintf(sim->warning, sizeof sim->warning, "%s", sim->report.warning);
+  return CF_OK;
+}
+
+/* One step, that ends at `until` at the latest. */
+static cf_status step(cf_sim *sim, const double until, bool *on_frame) {
   const double wish =
       isnan(sim->scene->time.dt) ? sim->model->natural_dt(sim->state, sim->time) : sim->scene->time.dt;
-  const double frame_time = cf_sim_frame_time(sim, sim->frame + 1), stop = CF_MIN(frame_time, sim->end);
+  const double frame_time = cf_sim_frame_time(sim, sim->frame + 1), stop = CF_MIN(frame_time, until);
   const double left = stop - sim->time;
   const bool lands = left <= wish * (1 + 1e-9);
   const double dt = lands ? left : wish;
   if (!(sim->time + dt > sim->time))
     return cf_fail(CF_FAILED, "the step of %g s is too short to move time on from t = %g s", dt, sim->time);
-  memset(&sim->report, 0, sizeof sim->report);
-  sim->report.solve.converged = true;
-  CF_TRY(sim->model->step(sim->state, sim->time, dt, &sim->report));
+  CF_TRY(make_step(sim, sim->time, dt));
   sim->time = lands ? stop : sim->time + dt;
   sim->dt = dt;
   ++sim->step;
@@ -119,6 +137,28 @@ cf_status cf_sim_step(cf_sim *sim, bool *on_frame) {
   CF_TRY(check_finite(sim));
   return check_converged(sim);
 }
+
+cf_status cf_sim_step(cf_sim *sim, bool *on_frame) {
+  bool landed;
+  if (cf_sim_finished(sim))
+    return cf_fail(CF_FAILED, "no step is left: the run has reached its end, t = %g s", sim->end);
+  return step(sim, sim->end, on_frame != NULL ? on_frame : &landed);
+}
+
+cf_status cf_sim_run(cf_sim *sim, const double until, const cf_sim_progress progress, void *context) {
+  bool landed;
+  if (isnan(until)) return cf_fail(CF_BAD_ARGUMENT, "a run until t = %g s: must be a number", until);
+  const double stop = CF_MIN(until, sim->end);
+  while (sim->time < stop) {
+    CF_TRY(step(sim, stop, &landed));
+    if (progress != NULL && !progress(context, sim))
+      return cf_fail(CF_STOPPED, "stopped on request at step %lld, t = %g s", (long long)sim->step,
+                     sim->time);
+  }
+  return CF_OK;
+}
+
+const char *cf_sim_warning(const cf_sim *sim) { return sim->warning; }
 
 /* --- metrics ----------------------------------------------------------------------------------------------
  */

@@ -24,6 +24,7 @@ struct cf_sim {
   int64_t frame;   /* frames reached; frame 0 is the start */
 
   cf_step_report report; /* of the latest step */
+  char warning[512];     /* of the latest step: the model's, or that the solver stalled; "" */
 };
 
 /* After cf_checkpoint_read into sim->registry. */
