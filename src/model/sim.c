@@ -100,7 +100,7 @@ static cf_status check_finite(const cf_sim *sim) {
 static cf_status check_converged(cf_sim *sim) {
   const cf_solve_report *solve = &sim->report.solve;
   if (solve->converged) return CF_OK;
-  char why[CF_SENTENCE_MAX];
+  char why[sizeof sim->warning];
   snprintf(why, sizeof why,
            "the solver stopped at a residual of %.3g after %d iterations in step %lld (t = %g s), above "
            "solver.tolerance = %g: raise the tolerance or solver.max_iterations, or take a smaller dt",
