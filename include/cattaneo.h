@@ -334,6 +334,7 @@ typedef struct cf_solve_report {
   int levels;      /* that the cycle went through */
   double residual; /* |b - A x| / |b| at the end */
   bool converged;
+  const char *method; /* that did it: "sor", "multigrid", "multigrid-pcg", "line" or "direct" */
 } cf_solve_report;
 
 /* --- diffusion with a memory --------------------------------------------------------------------------- *
@@ -429,8 +430,18 @@ double cf_diffuse_speed_max(const cf_diffuse *d);
  *                   well; no new extrema and constants kept for any u that is discretely free of divergence;
  *                   linear to round-off; order 2 and a bit on smooth fields, extrema are clipped.
  * CF_ADVECT_LINEAR  the paper's: trace back over dt with a midpoint step, interpolate linearly. One step for
- *                   any dt, bounded, strongly smearing, no promise about mass. */
-typedef enum cf_advect_scheme { CF_ADVECT_PPM, CF_ADVECT_LINEAR } cf_advect_scheme;
+ *                   any dt, bounded, strongly smearing, no promise about mass.
+ * CF_ADVECT_WENO5   finite volumes with fifth-order weighted reconstruction (WENO5-Z) and three Runge-Kutta
+ *                   stages, in as many substeps as it takes. Mass exact to round-off, through walls as well;
+ *                   smooth peaks are not clipped; new extrema of some per cent at jumps. The dearest.
+ * CF_ADVECT_CUBIC   traced back like CF_ADVECT_LINEAR, with cubic interpolation: sharp and cheap for any dt, new
+ *                   extrema at jumps, no promise about mass. */
+typedef enum cf_advect_scheme {
+  CF_ADVECT_PPM,
+  CF_ADVECT_LINEAR,
+  CF_ADVECT_WENO5,
+  CF_ADVECT_CUBIC
+} cf_advect_scheme;
 
 /* What the time derivative of a flux means in a moving medium:
  *   objective     q_t + div(u q) - q.grad u = 0: the flux turns and stretches with the medium (upper convected)
@@ -460,7 +471,8 @@ cf_status cf_advect_set_velocity(cf_advect *a, cf_face u, const cf_walls *walls)
  * max(c_d+, 0) + max(-c_d-, 0) + sum over e != d of max(c_e+ - c_e-, 0). 0 where nothing moves. */
 double cf_advect_rate(const cf_advect *a);
 
-/* Substeps that a step of dt takes, as many as keep the Courant number <= 0.9; 1 with CF_ADVECT_LINEAR. */
+/* Substeps that a step of dt takes, as many as keep the Courant number (with CF_ADVECT_WENO5 dim times it)
+ * <= 0.9; 1 with CF_ADVECT_LINEAR and CF_ADVECT_CUBIC. */
 double cf_advect_substeps(const cf_advect *a, double dt);
 
 #define CF_ADVECT_SUBSTEPS_MAX 100000
@@ -475,12 +487,12 @@ int64_t *cf_advect_parity(cf_advect *a);
 
 /* Moves phi over the step begun. Walls of phi: insulated mirrors; open lets 0 in; value and radiate let their
  * function (at the wall's face centres, at the middle of each substep) in; what flows out is phi itself.
- * Amounts are added to `through` (NULL is fine; with CF_ADVECT_LINEAR it stays as it is). */
+ * Amounts are added to `through` (NULL is fine; with CF_ADVECT_LINEAR and _CUBIC it stays as it is). */
 cf_status cf_advect_cell(cf_advect *a, const cf_walls *walls, cf_cell phi, cf_through *through);
 
 /* Moves the components of q over the step begun, each on volumes around its own faces. q.n on insulated walls
  * is 0; through all other walls the nearest q flows in. q must not be the velocity itself (move a copy). With
- * CF_ADVECT_LINEAR conservative and material are the same. */
+ * CF_ADVECT_LINEAR and CF_ADVECT_CUBIC conservative and material are the same. */
 cf_status cf_advect_face(cf_advect *a, const cf_walls *walls, cf_flux_rate rate, cf_face q);
 
 /* ========================================================================================================

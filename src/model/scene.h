@@ -28,7 +28,7 @@
 #define CF_SCHEME_WORDS(W)    W(DEFAULT, default) W(PAPER, paper) W(SDIRK2, sdirk2)
 #define CF_FLUX_RATE_WORDS(W) W(MATERIAL, material) W(CONSERVATIVE, conservative) W(OBJECTIVE, objective)
 #define CF_FILTER_WORDS(W)    W(AUTO, auto) W(ON, on) W(OFF, off)
-#define CF_ADVECTION_WORDS(W) W(PPM, ppm) W(LINEAR, linear)
+#define CF_ADVECTION_WORDS(W) W(PPM, ppm) W(LINEAR, linear) W(WENO5, weno5) W(CUBIC, cubic)
 #define CF_SHAPE_WORDS(W)     W(BOX, box) W(SPHERE, sphere) W(EVERYWHERE, everywhere)
 #define CF_STALL_WORDS(W)     W(WARN, warn) W(STOP, stop)
 #define CF_FORMAT_WORDS(W)    W(VTKHDF, vtkhdf) W(PNG, png) W(NPY, npy)
@@ -121,9 +121,11 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(front_filter, word, "auto", "", CF_WORDS(CF_FILTER_WORDS),                                             \
     "Takes the ripples off sharp fronts; auto: on where f_t is below 0.01")
 
-#define CF_ADVECTION_TABLE(P, R)                                            \
-  P(scheme, word, "ppm", "", CF_WORDS(CF_ADVECTION_WORDS),                  \
-    "How fields are carried by the flow: ppm (conservative, third order), " \
+#define CF_ADVECTION_TABLE(P, R)                                                                  \
+  P(scheme, word, "ppm", "", CF_WORDS(CF_ADVECTION_WORDS),                                        \
+    "How fields are carried by the flow: ppm (conservative, no new extrema, clips peaks), weno5 " \
+    "(conservative, fifth order, "                                                                \
+    "small overshoots at jumps), cubic (semi-Lagrangian, any step, no exact mass), "              \
     "linear (semi-Lagrangian with linear interpolation, as in the paper)")
 
 #define CF_FIELD_TABLE(P, R)                                                                     \

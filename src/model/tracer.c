@@ -30,6 +30,8 @@
 /* `dt: auto` where only Fourier diffusion limits the step: so many explicit steps in one. */
 #define FOURIER_STEPS 16
 
+enum { ADVECT_SCHEMES = 4 };
+
 typedef struct scalar {
   char name[CF_NAME_MAX], flux[CF_NAME_MAX];
   cf_cell phi;
@@ -50,8 +52,8 @@ typedef struct tracer {
   bool moves, velocity_in_time;
   double through_walls; /* largest velocity that stood on an insulated wall */
   cf_face u;
-  cf_advect *by_scheme[2]; /* made where needed: [CF_ADVECT_PPM], [CF_ADVECT_LINEAR] */
-  cf_cell work;            /* of the front filter */
+  cf_advect *by_scheme[ADVECT_SCHEMES]; /* by cf_advect_scheme, made where needed */
+  cf_cell work;                         /* of the front filter */
   double *rows;
 } tracer;
 
@@ -84,20 +86,24 @@ static cf_status set_velocity(tracer *m, const double t) {
   for (int a = 0; a < m->grid->box.dim; ++a)
     CF_TRY(cf_grid_sample(m->grid, &velocity_of(m->scene, a)->fn, a, t, m->u.at[a]));
   m->through_walls = close_walls(m);
-  for (int s = 0; s < 2; ++s)
+  for (int s = 0; s < ADVECT_SCHEMES; ++s)
     if (m->by_scheme[s] != NULL)
       CF_TRY(cf_advect_set_velocity(m->by_scheme[s], m->u, &m->scene->domain.walls.walls));
   return CF_OK;
 }
 
 static cf_advect_scheme advection_of(const tracer *m, const scalar *s) {
-  const bool linear = m->scene->advection.scheme == CF_SCENE_ADVECTION_LINEAR ||
-                      (s->paper && !m->scene->advection.given.scheme);
-  return linear ? CF_ADVECT_LINEAR : CF_ADVECT_PPM;
+  static const cf_advect_scheme by_word[] = {[CF_SCENE_ADVECTION_PPM] = CF_ADVECT_PPM,
+                                             [CF_SCENE_ADVECTION_LINEAR] = CF_ADVECT_LINEAR,
+                                             [CF_SCENE_ADVECTION_WENO5] = CF_ADVECT_WENO5,
+                                             [CF_SCENE_ADVECTION_CUBIC] = CF_ADVECT_CUBIC};
+  if (s->paper && !m->scene->advection.given.scheme) return CF_ADVECT_LINEAR;
+  return by_word[m->scene->advection.scheme];
 }
 
 static cf_status make_velocity(tracer *m, cf_registry *r) {
-  static const char *const parity[2] = {"sweep_parity", "sweep_parity_linear"};
+  static const char *const parity[ADVECT_SCHEMES] = {"sweep_parity", "sweep_parity_linear",
+                                                     "sweep_parity_weno5", "sweep_parity_cubic"};
   for (int a = 0; a < m->grid->box.dim; ++a) {
     const cf_fn *f = &velocity_of(m->scene, a)->fn;
     m->moves = m->moves || !cf_fn_is_constant(f) || f->value != 0;
@@ -242,7 +248,7 @@ static void tracer_destroy(void *model) {
   }
   cf_face_destroy(&m->u, &m->grid->box);
   cf_cell_destroy(&m->work, &m->grid->box);
-  for (int s = 0; s < 2; ++s) cf_advect_destroy(m->by_scheme[s]);
+  for (int s = 0; s < ADVECT_SCHEMES; ++s) cf_advect_destroy(m->by_scheme[s]);
   cf_free(m->scalar);
   cf_free(m->rows);
   cf_free(m);
@@ -277,7 +283,7 @@ static double tracer_natural_dt(const void *model, const double t) {
   const tracer *m = model;
   const double h = m->grid->h;
   double rate = 0; /* 1/dt at cfl 1 */
-  for (int s = 0; s < 2; ++s)
+  for (int s = 0; s < ADVECT_SCHEMES; ++s)
     if (m->by_scheme[s] != NULL) rate = CF_MAX(rate, cf_advect_rate(m->by_scheme[s]));
   double diffusion = 0;
   for (int i = 0; i < m->count; ++i) {
@@ -296,7 +302,7 @@ static cf_status move(tracer *m, const bool paper, const double t, const double 
                       cf_step_report *report) {
   if (!m->moves) return CF_OK;
   if (m->velocity_in_time) CF_TRY(set_velocity(m, t_velocity));
-  bool begun[2] = {false, false};
+  bool begun[ADVECT_SCHEMES] = {false};
   for (int i = 0; i < m->count; ++i) {
     scalar *s = &m->scalar[i];
     if (s->paper != paper) continue;

@@ -12,6 +12,7 @@
 #include "stencil/ppm.h"
 #include "stencil/stretch.h"
 #include "stencil/trace.h"
+#include "stencil/weno5.h"
 
 #define SAFE_K 0.9 /* at K = 1 all of a cell may be gone after the first sweeps, and rho = 0 */
 
@@ -24,9 +25,9 @@ struct cf_advect {
   double time, dt;       /* of the step begun; dt of a substep */
   int substeps;          /* of the step begun */
   int64_t parity, first; /* of the next step; of the step begun */
-  cf_cell work;
-  cf_face turned;       /* q half a stretch on; committed only where a flux is stretched */
-  cf_wall_values walls; /* room for every wall; the walls are those of the field being moved */
+  cf_cell work, second;  /* second: of CF_ADVECT_WENO5 alone */
+  cf_face turned;        /* q half a stretch on; committed only where a flux is stretched */
+  cf_wall_values walls;  /* room for every wall; the walls are those of the field being moved */
   cf_real *rows;
   double *lines;
 };
@@ -45,8 +46,10 @@ static cf_status take_scratch(cf_advect *a) {
   const cf_box *b = &a->grid->box;
   CF_TRY(cf_cell_create(&a->work, b));
   CF_TRY(cf_face_create(&a->turned, b));
-  CF_TRY(CF_NEW(&a->rows, cf_ppm_rows(a->grid) * a->grid->threads));
-  CF_TRY(CF_NEW(&a->lines, cf_ppm_lines(a->grid)));
+  const bool weno5 = a->scheme == CF_ADVECT_WENO5;
+  if (weno5) CF_TRY(cf_cell_create(&a->second, b));
+  CF_TRY(CF_NEW(&a->rows, (weno5 ? cf_weno5_rows(a->grid) : cf_ppm_rows(a->grid)) * a->grid->threads));
+  CF_TRY(CF_NEW(&a->lines, weno5 ? cf_weno5_lines(a->grid) : cf_ppm_lines(a->grid)));
   for (int axis = 0; axis < b->dim; ++axis)
     for (int side = 0; side < 2; ++side) {
       const cf_wall_side w = cf_wall_side_of(b, axis, side);
@@ -74,6 +77,7 @@ cf_status cf_advect_create(cf_advect **advect, const cf_grid *g, const cf_advect
 void cf_advect_destroy(cf_advect *a) {
   if (a == NULL) return;
   cf_cell_destroy(&a->work, &a->grid->box);
+  cf_cell_destroy(&a->second, &a->grid->box);
   cf_face_destroy(&a->turned, &a->grid->box);
   cf_free(a->rows);
   cf_free(a->lines);
@@ -93,9 +97,15 @@ cf_status cf_advect_set_velocity(cf_advect *a, const cf_face u, const cf_walls *
 
 double cf_advect_rate(const cf_advect *a) { return a->rate; }
 
+static bool is_traced(const cf_advect *a) {
+  return a->scheme == CF_ADVECT_LINEAR || a->scheme == CF_ADVECT_CUBIC;
+}
+
 double cf_advect_substeps(const cf_advect *a, const double dt) {
-  const double wanted = ceil(a->rate * dt / SAFE_K);
-  return a->scheme == CF_ADVECT_LINEAR || wanted < 1 ? 1 : wanted;
+  /* K is the most that one axis carries off; all axes at once can do so much each. */
+  const int axes = a->scheme == CF_ADVECT_WENO5 ? a->grid->box.dim : 1;
+  const double wanted = ceil(axes * a->rate * dt / SAFE_K);
+  return is_traced(a) || wanted < 1 ? 1 : wanted;
 }
 
 int64_t *cf_advect_parity(cf_advect *a) { return &a->parity; }
@@ -150,7 +160,38 @@ static void carry(cf_advect *a, const moved *m, const int substep, cf_through *t
   through->left += passed[1] * cf_grid_volume(a->grid);
 }
 
-/* The paper's step: back along the path, and linear. */
+/* Three stages of Runge-Kutta; what passes the walls in them counts 1/6, 1/6 and 2/3. */
+static void reconstruct(cf_advect *a, const moved *m, cf_through *through) {
+  static const double share[3] = {0, 0.75, 1.0 / 3}, weight[3] = {1.0 / 6, 1.0 / 6, 2.0 / 3};
+  cf_real *const into[3] = {a->work.at, a->second.at, m->at};
+  cf_weno5_stage s = {.grid = a->grid,
+                      .component = m->component,
+                      .count = {m->count[0], m->count[1], m->count[2]},
+                      .mass = m->mass,
+                      .half = (cf_real)(a->dt / (2 * a->grid->h)),
+                      .u = a->u,
+                      .old = m->at,
+                      .from = m->at,
+                      .rows = a->rows,
+                      .lines = through != NULL ? a->lines : NULL};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      s.ghost[axis][side] = m->ghost[axis][side];
+      s.inflow[axis][side] = a->walls.at[axis][side];
+    }
+  double passed[2] = {0, 0};
+  for (int stage = 0; stage < 3; ++stage) {
+    s.share = (cf_real)share[stage];
+    s.to = into[stage];
+    cf_weno5_stage_run(&s, weight[stage], passed);
+    s.from = s.to;
+  }
+  if (through == NULL) return;
+  through->entered += passed[0] * cf_grid_volume(a->grid);
+  through->left += passed[1] * cf_grid_volume(a->grid);
+}
+
+/* The paper's step: back along the path, and linear; or cubic. */
 static void trace(cf_advect *a, const moved *m) {
   const cf_box *b = &a->grid->box;
   cf_halo halo;
@@ -159,6 +200,7 @@ static void trace(cf_advect *a, const moved *m) {
                 .count = {m->count[0], m->count[1], m->count[2]},
                 .dt = a->dt,
                 .u = a->u,
+                .cubic = a->scheme == CF_ADVECT_CUBIC,
                 .from = m->at,
                 .to = a->work.at};
   for (int axis = 0; axis < b->dim; ++axis) {
@@ -168,7 +210,7 @@ static void trace(cf_advect *a, const moved *m) {
       halo.rule[axis][side] = t.wrap[axis] ? CF_HALO_WRAP : CF_HALO_COPY;
     }
   }
-  cf_halo_fill(b, &halo, 1, m->component, m->at);
+  cf_halo_fill(b, &halo, t.cubic ? 2 : 1, m->component, m->at);
   cf_trace_run(&t);
   const ptrdiff_t rows = (ptrdiff_t)m->count[1] * m->count[2];
 #pragma omp parallel for schedule(static) num_threads(cf_sweep_threads(b, a->grid->threads))
@@ -176,6 +218,15 @@ static void trace(cf_advect *a, const moved *m) {
     const ptrdiff_t p = cf_box_at(b, 0, (int)(r % m->count[1]), (int)(r / m->count[1]));
     memcpy(m->at + p, a->work.at + p, (size_t)m->count[0] * sizeof *m->at);
   }
+}
+
+static void move(cf_advect *a, const moved *m, const int substep, cf_through *through) {
+  if (is_traced(a))
+    trace(a, m);
+  else if (a->scheme == CF_ADVECT_WENO5)
+    reconstruct(a, m, through);
+  else
+    carry(a, m, substep, through);
 }
 
 /* --- cells -------------------------------------------------------------------------------------------- */
@@ -219,10 +270,7 @@ cf_status cf_advect_cell(cf_advect *a, const cf_walls *walls, const cf_cell phi,
   take_walls(a, walls);
   for (int substep = 0; substep < a->substeps; ++substep) {
     cf_wall_values_sample(&a->walls, a->time + (substep + 0.5) * a->dt);
-    if (a->scheme == CF_ADVECT_LINEAR)
-      trace(a, &m);
-    else
-      carry(a, &m, substep, through);
+    move(a, &m, substep, through);
   }
   return CF_OK;
 }
@@ -254,10 +302,7 @@ static void stretch(cf_advect *a, const cf_walls *walls, const double dt, const 
 }
 
 static void carry_component(cf_advect *a, const moved *m, const int substep) {
-  if (a->scheme == CF_ADVECT_LINEAR)
-    trace(a, m);
-  else
-    carry(a, m, substep, NULL);
+  move(a, m, substep, NULL);
   if (!a->wrap[m->component]) return;
   cf_halo image = {0};
   image.rule[m->component][0] = image.rule[m->component][1] = CF_HALO_WRAP;

@@ -61,18 +61,9 @@ static ptrdiff_t lines_of(const cf_ppm_sweep *s) {
 
 /* --- beyond the walls --------------------------------------------------------------------------------- */
 
-/* The volume along the axis (0..count-1) that stands for volume `g` beyond a wall. */
-static int image_of(const cf_ghost rule, const int g, const int count) {
-  int i = g < 0 ? 0 : count - 1;
-  if (rule == CF_GHOST_WRAP) return ((g % count) + count) % count;
-  if (rule == CF_GHOST_MIRROR) i = g < 0 ? -1 - g : 2 * count - 1 - g;
-  if (rule == CF_GHOST_ODD) i = g < 0 ? -g : 2 * (count - 1) - g;
-  return i < 0 ? 0 : i >= count ? count - 1 : i;
-}
-
 /* The volume whose density the one beyond a wall has, or -1: its density is 1. */
 static int dense_as(const cf_ghost rule, const int g, const int count) {
-  return rule == CF_GHOST_WRAP || rule == CF_GHOST_ODD ? image_of(rule, g, count) : -1;
+  return rule == CF_GHOST_WRAP || rule == CF_GHOST_ODD ? cf_ghost_image(rule, g, count) : -1;
 }
 
 /* Adds what passed through wall faces with flux f and Courant number c to entered and left. `inward` is 1
@@ -112,7 +103,7 @@ static void fill_ends(const cf_ppm_sweep *s, const ptrdiff_t line, const cf_real
     const bool enters = rule == CF_GHOST_INFLOW && (side == 0 ? c[0] > 0 : c[n] < 0);
     for (int g = 0; g < 3; ++g) {
       const int to = side == 0 ? -1 - g : n + g;
-      const cf_real image = p[image_of(rule, to, n)];
+      const cf_real image = p[cf_ghost_image(rule, to, n)];
       p[to] = enters ? (cf_real)s->inflow[side][line] : rule == CF_GHOST_ODD ? -image : image;
     }
     const int to = side == 0 ? -1 : n, as = dense_as(rule, to, n);
@@ -163,7 +154,7 @@ static const cf_real *values(const walk *w, const int j) {
   if (j >= 0 && j < w->count) return s->from + w->at + j * w->stride;
   const int side = j < 0 ? 0 : 1;
   const cf_ghost rule = s->ghost[side];
-  const cf_real *image = s->from + w->at + image_of(rule, j, w->count) * w->stride;
+  const cf_real *image = s->from + w->at + cf_ghost_image(rule, j, w->count) * w->stride;
   if (rule != CF_GHOST_ODD && rule != CF_GHOST_INFLOW) return image;
   cf_real *ghost = ring(w->ghost, 4, j);
   if (rule == CF_GHOST_ODD) {

@@ -29,6 +29,7 @@
 #include "grid/field.h"
 #include "grid/grid.h"
 #include "grid/sweep.h"
+#include "stencil/ghost.h"
 #include "stencil/limit.h"
 
 /* d[i] from a volume and its two neighbours. */
@@ -102,15 +103,6 @@ CF_KERNEL void cf_ppm_thin_row(const int n, const cf_real *u, const ptrdiff_t ne
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) rho[i] -= (u[i + next] + u[i + next - shift]) * w - (u[i] + u[i - shift]) * w;
 }
-
-/* What lies beyond a wall. */
-typedef enum cf_ghost {
-  CF_GHOST_WRAP,   /* the other side's volumes */
-  CF_GHOST_MIRROR, /* cells reflected at the wall */
-  CF_GHOST_ODD,    /* faces of the swept axis reflected at the wall face with the sign changed */
-  CF_GHOST_COPY,   /* the nearest volume's value */
-  CF_GHOST_INFLOW, /* `inflow` where the flow enters, the nearest volume's value where it leaves */
-} cf_ghost;
 
 typedef struct cf_ppm_sweep {
   const cf_grid *grid;

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "grid/sweep.h"
+#include "stencil/cubic.h"
 #include "stencil/sample.h"
 
 /* x + dt u(at), in cells; brought back into the box where the axis wraps. */
@@ -42,7 +43,9 @@ static void trace_row(const cf_trace *t, const int j, const int k) {
     for (int a = 0; a < b->dim; ++a) x[a] = index[a] + (a == t->component ? 0.0 : 0.5);
     follow(t, x, x, -t->dt / 2, middle);
     follow(t, x, middle, -t->dt, start);
-    if (!comes_in(t, start, &to[i])) to[i] = cf_sample_in_cells(b, t->component, t->from, start);
+    if (comes_in(t, start, &to[i])) continue;
+    to[i] = t->cubic ? cf_cubic_in_cells(b, t->component, t->from, start)
+                     : cf_sample_in_cells(b, t->component, t->from, start);
   }
 }
 

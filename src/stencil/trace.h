@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Semi-Lagrangian moves: what is at a point after dt was at x0 = x - dt u(x - dt/2 u(x)), and is interpolated
- * linearly there (Courant, Isaacson, Rees 1952; Stam 1999). Bounded for any dt, smears, keeps no sum.
+ * there: linearly (Courant, Isaacson, Rees 1952; Stam 1999), bounded for any dt and smearing, or cubically,
+ * much sharper and with overshoots at jumps. Neither keeps a sum.
  *
  * A path that leaves the box through a wall finds there the value that flows in, if the wall has one, and
  * else the field's own value at the wall.
@@ -22,8 +23,9 @@ typedef struct cf_trace {
   cf_face u;    /* with one layer of ghosts, corners included */
   bool wrap[3]; /* axes that are periodic */
   const double
-      *inflow[3][2];   /* values of the walls' cells, the lower of the other axes fastest; NULL: none */
-  const cf_real *from; /* with one layer of ghosts */
+      *inflow[3][2]; /* values of the walls' cells, the lower of the other axes fastest; NULL: none */
+  bool cubic;
+  const cf_real *from; /* with one layer of ghosts, two if cubic */
   cf_real *to;         /* another field */
 } cf_trace;
 
