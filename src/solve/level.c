@@ -12,6 +12,7 @@ typedef struct row {
   cf_real *out;
   cf_real omega;
   int colour;
+  bool clashes; /* some cells have neighbours of their own colour */
 } row;
 
 typedef struct couplings {
@@ -20,6 +21,7 @@ typedef struct couplings {
   cf_real alpha;
   const cf_real *alpha_cell, *beta[3];
   ptrdiff_t stride[3];
+  cf_real clash[3][2]; /* see clash_at */
 } couplings;
 
 CF_KERNEL couplings couplings_of(const int dim, const cf_level *l, const ptrdiff_t r) {
@@ -31,6 +33,9 @@ CF_KERNEL couplings couplings_of(const int dim, const cf_level *l, const ptrdiff
     c.hi[a] = l->axis[a].hi[at[a]];
     c.beta[a] = l->beta.at[a];
     c.stride[a] = l->box.stride[a];
+    const cf_real half = l->axis[a].periodic && l->axis[a].n % 2 == 1 ? (cf_real)0.5 : 0;
+    c.clash[a][0] = a == 0 || at[a] == 0 ? half : 0;
+    c.clash[a][1] = a == 0 || at[a] == l->axis[a].n - 1 ? half : 0;
   }
   c.alpha_cell = l->alpha_cell.at;
   return c;
@@ -82,9 +87,24 @@ CF_KERNEL void residual_row(const int dim, const int variable, const int n, cons
   }
 }
 
+/* Around an odd periodic axis the first and the last cell are neighbours of one colour, moved at once without
+ * seeing each other: where their coupling dominates, that is no smoothing but growth. Half of the coupling added
+ * to the diagonal mends it (l1 smoothing: Baker, Falgout, Kolev, Yang 2011). With a constant beta there are
+ * always enough other couplings. */
+CF_KERNEL cf_real clash_at(const int dim, const int n, const couplings *c, const int i, const ptrdiff_t p) {
+  cf_real sum = 0;
+  CF_AXIS_LOOP
+  for (int a = 0; a < dim; ++a) {
+    const cf_real lo = a == 0 && i != 0 ? 0 : c->clash[a][0], hi = a == 0 && i != n - 1 ? 0 : c->clash[a][1];
+    sum += lo * coupling(1, c, a, 0, i, p) + hi * coupling(1, c, a, 1, i, p);
+  }
+  return sum;
+}
+
 /* Cells of one colour (parity of i + j + k) are updated in place; their neighbours have the other colour, so
  * rows may run in any order. */
-CF_KERNEL void smooth_row(const int dim, const int variable, const int n, const row *w, const ptrdiff_t r) {
+CF_KERNEL void smooth_cells(const int dim, const int variable, const int clashes, const int n, const row *w,
+                            const ptrdiff_t r) {
   const couplings c = couplings_of(dim, w->level, r);
   const ptrdiff_t start = cf_box_row(&w->level->box, r);
   const int n1 = w->level->box.n[1];
@@ -96,9 +116,17 @@ CF_KERNEL void smooth_row(const int dim, const int variable, const int n, const 
   for (int i = 0; i < n; ++i) {
     cf_real diagonal;
     const cf_real residual = b[start + i] - apply_at(dim, variable, &c, x, i, start + i, &diagonal);
+    if (clashes) diagonal += clash_at(dim, n, &c, i, start + i);
     const cf_real step = omega * residual / (diagonal > 0 ? diagonal : 1);
     if (((i ^ skip) & 1) == 0 && diagonal > 0) x[start + i] += step;
   }
+}
+
+CF_KERNEL void smooth_row(const int dim, const int variable, const int n, const row *w, const ptrdiff_t r) {
+  if (variable && w->clashes)
+    smooth_cells(dim, variable, 1, n, w, r);
+  else
+    smooth_cells(dim, variable, 0, n, w, r);
 }
 
 CF_CLONED_FORMS(apply_row, const row *, const ptrdiff_t)
@@ -122,10 +150,16 @@ void cf_level_residual(const cf_level *l, const cf_cell x, const cf_cell b, cons
     residual_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
 }
 
+static bool has_odd_ring(const cf_level *l) {
+  for (int a = 0; a < l->box.dim; ++a)
+    if (l->axis[a].periodic && l->axis[a].n % 2 == 1) return true;
+  return false;
+}
+
 void cf_level_smooth(const cf_level *l, const cf_cell b, const cf_real omega, const cf_cell x) {
   for (int colour = 0; colour < 2; ++colour) {
     fill_seams(l, x);
-    const row w = {.level = l, .b = b.at, .out = x.at, .omega = omega, .colour = colour};
+    const row w = {l, NULL, b.at, x.at, omega, colour, has_odd_ring(l)};
     CF_PARALLEL_ROWS (&l->box, l->threads, at)
       smooth_row_by_form(l->box.dim, l->variable, l->box.n[0], &w, at);
   }

@@ -4,7 +4,7 @@
  * and for Poisson's equation, for any walls and any extents. Each test prints the largest count it met, by sigma.
  *
  * Coefficients that jump by 10 inside a cell of a coarse level (blocks that do not fit the extents: the odd ones)
- * cost up to 5 more: averaging cannot tell where in that cell the jump is. Blocks that fit cost one.
+ * cost up to 4 more: averaging cannot tell where in that cell the jump is. Blocks that fit cost one.
  */
 #include "solve_case.h"
 
@@ -34,7 +34,7 @@ static bool blocks_fit(const solve_case *c) {
 
 static int allowed(const solve_case *c) {
   const int jumps = c->beta == BETA_CHECKERS || c->beta == BETA_BLOCKS;
-  return (c->sigma <= 1e3 ? 10 : 12) + (jumps && !blocks_fit(c) ? 5 : jumps);
+  return (c->sigma <= 1e3 ? 10 : 12) + (jumps && !blocks_fit(c) ? 4 : jumps);
 }
 
 static int iterations(const solve_case *c) {
@@ -83,7 +83,7 @@ static void small_boxes(const case_beta beta, const int alpha_varies, worst *w) 
           q < SMALL_2D ? box(2, n[0], n[1], 1, walls_2d[v]) : box(3, n[0], n[1], n[2], walls_3d[v]);
       c.beta = beta;
       c.alpha_varies = alpha_varies;
-      try_sigmas(c, q + v, beta == BETA_NUMBER && !alpha_varies ? 2 : 5, w);
+      try_sigmas(c, q + v, beta == BETA_NUMBER && !alpha_varies ? 1 : 3, w);
     }
   print_worst(w);
 }
