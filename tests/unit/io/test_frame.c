@@ -136,21 +136,28 @@ static void same_frame_same_bytes(void **state) {
   }
 }
 
+/* Whatever the byte at which there is no more room. */
 static void a_full_disk_leaves_the_earlier_frames(void **state) {
   output_case *c = *state;
   struct rlimit old;
+  char *bytes;
+  size_t size;
   assert_int_equal(write_frame(c, 1, 0), CF_OK);
+  assert_int_equal(cf_file_read(case_path(c, "fields_000001.vtkhdf").text, 1 << 24, &bytes, &size), CF_OK);
+  cf_free(bytes);
   const int before = files_in(c->folder.text);
   signal(SIGXFSZ, SIG_IGN);
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
-  const struct rlimit limit = {3000, old.rlim_max};
-  assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
-  const cf_status s = write_frame(c, 2, 0);
-  assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
-  assert_int_equal(s, CF_CANNOT_WRITE);
-  assert_says("fields_000002.vtkhdf: cannot write");
-  assert_says("File too large");
-  assert_int_equal(files_in(c->folder.text), before);
+  for (rlim_t most = 0; most < size; most += 97) {
+    const struct rlimit limit = {most, old.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    const cf_status s = write_frame(c, 2, 0);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
+    assert_int_equal(s, CF_CANNOT_WRITE);
+    assert_says("fields_000002.vtkhdf: cannot ");
+    assert_says("File too large");
+    assert_int_equal(files_in(c->folder.text), before);
+  }
 }
 
 static void a_missing_folder_is_said(void **state) {
