@@ -40,7 +40,7 @@ programs: setup
 # --- words that run something -----------------------------------------------------------------------------
 
 demo: programs
-	@CATTANEO=$(abspath $(BUILD))/bin/cattaneo examples/cone/demo.sh
+	@examples/cone/demo.sh $(BUILD)/bin/cattaneo out/cone
 
 test: setup-tests
 	@$(MAKE) --no-print-directory configure

@@ -22,9 +22,7 @@ foreach(precision IN ITEMS double single)
   install(TARGETS cattaneo${suffix} EXPORT cattaneo
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  if(TARGET cattaneo_program_${precision})
-    install(TARGETS cattaneo_program_${precision} DESTINATION ${CMAKE_INSTALL_BINDIR})
-  endif()
+  install(TARGETS cattaneo_program_${precision} DESTINATION ${CMAKE_INSTALL_BINDIR})
   set(PC_NAME cattaneo${suffix})
   set(PC_PRECISION ${precision})
   set(PC_DEFINE ${define})
@@ -41,12 +39,11 @@ install(FILES ${CMAKE_SOURCE_DIR}/cmake/cattaneo-config.cmake
   ${CMAKE_BINARY_DIR}/generated/cattaneo-config-version.cmake DESTINATION ${package_folder})
 
 # The manual page says what --help says: the program writes it.
-if(TARGET cattaneo_program_double)
-  add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/generated/cattaneo.1
-    COMMAND cattaneo_program_double help --manual > ${CMAKE_BINARY_DIR}/generated/cattaneo.1
-    DEPENDS cattaneo_program_double
-    COMMENT "Writing cattaneo.1"
-    VERBATIM)
-  add_custom_target(manual ALL DEPENDS ${CMAKE_BINARY_DIR}/generated/cattaneo.1)
-  install(FILES ${CMAKE_BINARY_DIR}/generated/cattaneo.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-endif()
+set(manual ${CMAKE_BINARY_DIR}/generated/cattaneo.1)
+add_custom_command(OUTPUT ${manual}
+  COMMAND cattaneo_program_double help --manual > ${manual}
+  DEPENDS cattaneo_program_double
+  COMMENT "Writing cattaneo.1"
+  VERBATIM)
+add_custom_target(manual ALL DEPENDS ${manual})
+install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

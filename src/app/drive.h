@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What `run` and `resume` share once the session is open, and the change to the program of the other precision.
+ * What `run` and `resume` share once the session is open.
  */
 #ifndef CF_APP_DRIVE_H
 #define CF_APP_DRIVE_H
@@ -13,8 +13,5 @@ cf_session_options cf_drive_options(const cf_arguments *a, cf_teller *teller);
 /* Runs the session, says how it ended, and puts the folder's name on stdout. `opened` is how opening it went;
  * closes the session. */
 cf_status cf_drive(cf_arguments *a, cf_teller *teller, cf_session *s, cf_status opened);
-
-/* Replaces this program by its sister, with the same arguments; returns only on failure. */
-cf_status cf_sister_start(char **argv);
 
 #endif

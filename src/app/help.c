@@ -83,9 +83,11 @@ void cf_help_overview(FILE *out) {
     fprintf(out, "  %-5s", name);
     print_wrapped(out, exit_codes[i].meaning, 7, 7);
   }
-  fputs("\n`" CF_PROGRAM " help COMMAND` says what a command takes, `" CF_PROGRAM
-        " examples` lists scenes to\nstart from.\n",
-        out);
+  putc('\n', out);
+  print_wrapped(out,
+                "`" CF_PROGRAM " help COMMAND` says what a command takes, `" CF_PROGRAM
+                " examples` lists scenes to start from.",
+                0, 0);
 }
 
 void cf_help_command_page(FILE *out, const cf_command *c) {

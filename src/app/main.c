@@ -41,9 +41,9 @@ static int finish(cf_status status, const bool told) {
 
 static int command_main(const cf_command *c, const int argc, char **argv) {
   cf_arguments a;
-  if (cf_arguments_read(&a, argc - 1, argv + 1, c->options) != CF_OK) return usage_failure(c->name);
+  cf_status status = cf_arguments_read(&a, argc - 1, argv + 1, c->options);
+  if (status != CF_OK) return status == CF_BAD_USAGE ? usage_failure(c->name) : finish(status, false);
   a.argv = argv;
-  cf_status status = CF_OK;
   if (a.help) {
     cf_help_command_page(stdout, c);
   } else {

@@ -109,6 +109,7 @@ static int terminal_width(void) {
 
 static bool is_due(const cf_teller *t, const cf_progress *p) {
   const double since = p->seconds - t->told;
+  if (p->finished) return p->step != t->step || t->kind == CF_PROGRESS_JSON;
   const bool new_frame = p->frame != t->frame;
   if (t->rewrites) return since >= REWRITE_EVERY;
   if (t->kind == CF_PROGRESS_JSON) return new_frame || since >= JSON_EVERY;
@@ -137,10 +138,11 @@ bool cf_teller_progress(void *context, const cf_progress *p) {
   if (first) t->first_step = p->step - 1;
   t->began = true;
   const bool moved = p->step > t->first_step;
-  if (t->kind != CF_PROGRESS_NONE && moved && (first || p->finished || is_due(t, p))) {
+  if (t->kind != CF_PROGRESS_NONE && moved && (first || is_due(t, p))) {
     tell(t, p);
     t->told = p->seconds;
     t->frame = p->frame;
+    t->step = p->step;
   }
   return !cf_stop_asked();
 }
@@ -152,6 +154,7 @@ void cf_teller_end(cf_teller *t) {
 
 void cf_teller_say(void *context, const char *line) {
   cf_teller *t = context;
+  snprintf(t->said, sizeof t->said, "%s", line);
   if (t->kind == CF_PROGRESS_JSON) {
     json_message("message", line);
     return;
@@ -165,7 +168,7 @@ void cf_teller_last(cf_teller *t, const char *event, const char *line) {
   cf_teller_end(t);
   if (t->kind == CF_PROGRESS_JSON)
     json_message(event, line);
-  else
+  else if (strcmp(line, t->said) != 0)
     fprintf(stderr, "%s\n", line);
 }
 

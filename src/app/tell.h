@@ -22,8 +22,9 @@ typedef struct cf_teller {
   bool rewrites; /* kind is AUTO and stderr is a terminal */
   bool open;     /* a line stands there without its end */
   bool began;
-  double told;               /* wall-clock second of the last line */
-  int64_t frame, first_step; /* of the last line; before the first step of this start */
+  double told;                     /* wall-clock second of the last line */
+  int64_t frame, step, first_step; /* of the last line; before the first step of this start */
+  char said[CF_SENTENCE_MAX];      /* the last line that was no progress: not said twice */
 } cf_teller;
 
 cf_teller cf_teller_begin(cf_progress_kind kind);

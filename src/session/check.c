@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The page of `check`; see check.h. Where the machine has the memory, the model is created as a run would do it
+ * (and thrown away): what only a grid can tell is then told here, not at the start of a run.
+ */
+#define _GNU_SOURCE
+#include "session/check.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "base/real.h"
+#include "model/sim.h"
+#include "session/check_scalar.h"
+#include "session/output.h"
+#include "session/session.h"
+
+/* Where a flow crosses more cells than this in a step, what it carries is no longer carried well. */
+#define CELLS_A_STEP 2.0
+#define MANY_FRAMES  10000.0
+
+static void add(cf_check *c, const char *name, const char *text) {
+  cf_writing_add(&c->page, "%-15s %s\n", name, text);
+}
+
+/* Sizes for people: "12 MB", "3.4 GB". */
+static void bytes_text(const double bytes, char *text, const size_t size) {
+  if (bytes < 1e9)
+    snprintf(text, size, "%.3g MB", bytes / 1e6);
+  else
+    snprintf(text, size, "%.3g GB", bytes / 1e9);
+}
+
+static double machine_memory(void) {
+  return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGE_SIZE);
+}
+
+/* --- space ------------------------------------------------------------------------------------------------ */
+
+static void add_grid(cf_check *c) {
+  char text[256];
+  const cf_scene_domain *d = &c->scene->domain;
+  const bool deep = c->scene->dim == 3;
+  double cells = 1;
+  for (int a = 0; a < c->scene->dim; ++a) cells *= (double)d->cells.value[a];
+  int n = snprintf(text, sizeof text, "%ld x %ld", d->cells.value[0], d->cells.value[1]);
+  if (deep) n += snprintf(text + n, sizeof text - (size_t)n, " x %ld", d->cells.value[2]);
+  snprintf(text + n, sizeof text - (size_t)n, " = %.3g cells of %.4g m", cells, c->scene->spacing);
+  add(c, "grid", text);
+  n = snprintf(text, sizeof text, "%.4g x %.4g", d->size.value[0], d->size.value[1]);
+  if (deep) n += snprintf(text + n, sizeof text - (size_t)n, " x %.4g", d->size.value[2]);
+  n += snprintf(text + n, sizeof text - (size_t)n, " m from (");
+  for (int a = 0; a < c->scene->dim; ++a)
+    n += snprintf(text + n, sizeof text - (size_t)n, "%s%.4g", a > 0 ? ", " : "",
+                  d->origin.count > 0 ? d->origin.value[a] : 0.0);
+  snprintf(text + n, sizeof text - (size_t)n, ")");
+  add(c, "box", text);
+}
+
+static void add_walls(cf_check *c, const char *name, const cf_walls *walls) {
+  static const char *const words[] = {
+#define WALL_WORD(upper, lower) #lower,
+      CF_WALL_LIST(WALL_WORD)
+#undef WALL_WORD
+  };
+  char text[256];
+  bool same = true;
+  int n = 0;
+  for (int a = 0; a < c->scene->dim; ++a)
+    for (int side = 0; side < 2; ++side) same = same && walls->kind[a][side] == walls->kind[0][0];
+  if (same)
+    snprintf(text, sizeof text, "%s on all sides", words[walls->kind[0][0]]);
+  else
+    for (int a = 0; a < c->scene->dim; ++a)
+      for (int side = 0; side < 2; ++side)
+        n += snprintf(text + n, sizeof text - (size_t)n, "%s%c%c %s", n > 0 ? ", " : "", "xyz"[a], "-+"[side],
+                      words[walls->kind[a][side]]);
+  add(c, name, text);
+}
+
+static cf_status add_flow(cf_check *c) {
+  const cf_param_functions *u = &c->scene->velocity;
+  char text[128];
+  double square = 0;
+  bool in_time = false;
+  for (int a = 0; a < c->scene->dim; ++a) {
+    cf_extremes e;
+    const cf_fn *f = &u->axis[u->count > 1 ? a : 0].fn;
+    CF_TRY(cf_check_sample(c->scene, f, "velocity", &e));
+    const double most = fmax(fabs(e.least), fabs(e.largest));
+    square += most * most;
+    in_time = in_time || f->in_time;
+  }
+  c->speed = sqrt(square);
+  if (c->speed == 0 && !in_time)
+    snprintf(text, sizeof text, "at rest");
+  else
+    snprintf(text, sizeof text, "up to %.4g m/s%s", c->speed,
+             in_time ? " at time 0; it changes with time" : "");
+  add(c, "flow", text);
+  return CF_OK;
+}
+
+/* --- time ------------------------------------------------------------------------------------------------- */
+
+/* The step of `dt: auto` where no model could be made: as the model does it, from the largest values. */
+static cf_status guess_dt(cf_check *c) {
+  const double h = c->scene->spacing, longest = c->scene->time.end / 100;
+  double fastest = 0;
+  for (int i = 0; i < c->scene->fields.count; ++i) {
+    const cf_scene_diffusion *d = &c->scene->fields.item[i].diffusion;
+    cf_extremes k;
+    CF_TRY(cf_check_sample(c->scene, &d->k.fn, "diffusion.k", &k));
+    const double speed = d->tau > 0 ? sqrt((1 - d->f_t) * k.largest / d->tau) : 0;
+    fastest = fmax(fastest, fmax(speed, (d->tau > 0 ? d->f_t : 1) * k.largest / (16 * h)));
+  }
+  const double rate = (c->speed + fastest) / h;
+  c->dt = rate > 0 ? fmin(c->scene->time.cfl / rate, longest) : longest;
+  return CF_OK;
+}
+
+static void add_time(cf_check *c) {
+  char text[256];
+  const cf_scene_time *time = &c->scene->time;
+  const bool automatic = isnan(time->dt);
+  const double frames = time->frames > 0 ? ceil(time->end * time->frames * (1 - 1e-9)) : 1;
+  const double interval = time->frames > 0 ? fmin(1 / time->frames, time->end) : time->end;
+  const double in_frame = ceil(interval / c->dt * (1 - 1e-9));
+  snprintf(text, sizeof text, "0 to %.4g s in steps of %s%.4g s: about %.0f steps", time->end,
+           automatic ? "(auto) " : "", c->dt, frames * in_frame);
+  add(c, "time", text);
+  snprintf(text, sizeof text, "0 to %.0f, one every %.4g s", frames, interval);
+  add(c, "frames", text);
+  if (!automatic && c->dt > interval * (1 + 1e-9))
+    cf_writing_add(&c->warnings,
+                   "  time.dt is longer than the time between frames: steps are shortened to %.4g s\n",
+                   interval);
+  if (frames > MANY_FRAMES)
+    cf_writing_add(&c->warnings, "  time.frames is a rate, frames per s: this run writes %.3g of them\n",
+                   frames);
+  const double cells = c->speed * c->dt / c->scene->spacing;
+  if (cells > CELLS_A_STEP)
+    cf_writing_add(&c->warnings,
+                   "  the flow crosses %.3g cells a step: time.dt of %.2g s or less carries better\n", cells,
+                   CELLS_A_STEP * c->scene->spacing / c->speed);
+}
+
+/* --- memory and disk -------------------------------------------------------------------------------------- */
+
+/* Bytes of a frame's fields. */
+static double frame_bytes(const cf_scene *scene) {
+  double cells = sizeof(cf_real), values = 0;
+  for (int a = 0; a < scene->dim; ++a) cells *= (double)scene->domain.cells.value[a];
+  const bool chosen = scene->output.fields.count > 0;
+  const int count = chosen ? scene->output.fields.count : scene->fields.count;
+  for (int i = 0; i < count; ++i) {
+    const char *name = chosen ? scene->output.fields.item[i] : scene->fields.item[i].name;
+    values += cf_scene_name_is_flux(name) || strcmp(name, "velocity") == 0 ? scene->dim : 1;
+  }
+  const unsigned formats = scene->output.formats;
+  return cells * values * ((formats >> CF_SCENE_FORMAT_VTKHDF & 1) + (formats >> CF_SCENE_FORMAT_NPY & 1));
+}
+
+static void add_memory(cf_check *c) {
+  char text[256], one[32], other[32];
+  const double needed = cf_session_memory(c->scene), machine = machine_memory();
+  bytes_text(needed, one, sizeof one);
+  snprintf(text, sizeof text, "%s at most, in %s precision", one, CF_PRECISION);
+  add(c, "memory", text);
+  if (needed > machine) {
+    bytes_text(machine, other, sizeof other);
+    cf_writing_add(&c->warnings, "  the run may need %s, this machine has %s\n", one, other);
+  }
+  const double frame = frame_bytes(c->scene);
+  const double frames = c->scene->time.frames > 0 ? c->scene->time.end * c->scene->time.frames + 1 : 2;
+  bytes_text(frame, one, sizeof one);
+  bytes_text(frame * frames, other, sizeof other);
+  snprintf(text, sizeof text, "%s a frame, %s in all, before compression", one, other);
+  add(c, "disk", text);
+}
+
+/* --- the page --------------------------------------------------------------------------------------------- */
+
+/* As a run would begin; leaves the step that `dt: auto` takes. *tried: there was the memory to do so. */
+static cf_status try_model(cf_check *c, bool *tried) {
+  cf_sim *sim;
+  *tried = cf_session_memory(c->scene) < machine_memory() / 2;
+  c->dt = c->scene->time.dt;
+  if (!*tried) return CF_OK;
+  CF_TRY(cf_sim_create(&sim, c->scene, omp_get_num_procs()));
+  if (isnan(c->dt)) c->dt = sim->model->natural_dt(sim->state, 0);
+  const cf_status status = cf_output_check(sim);
+  cf_sim_destroy(sim);
+  return status;
+}
+
+static cf_status write_page(cf_check *c) {
+  bool tried;
+  cf_writing_add(&c->page, "%s: %s\n\n", cf_scene_path(c->scene),
+                 c->scene->title[0] != '\0' ? c->scene->title : "without a title");
+  CF_TRY(try_model(c, &tried));
+  if (!tried)
+    cf_writing_add(&c->warnings,
+                   "  too large to be tried here: a run may still find something wrong at its start\n");
+  add_grid(c);
+  add_walls(c, "walls", &c->scene->domain.walls.walls);
+  CF_TRY(add_flow(c));
+  if (isnan(c->dt)) CF_TRY(guess_dt(c));
+  add_time(c);
+  add_memory(c);
+  for (int i = 0; i < c->scene->fields.count; ++i)
+    if (!cf_scene_name_is_flux(c->scene->fields.item[i].name)) {
+      CF_TRY(cf_check_scalar(c, i));
+      if (c->scene->fields.item[i].given.walls)
+        add_walls(c, "  walls", &c->scene->fields.item[i].walls.walls);
+    }
+  return CF_OK;
+}
+
+cf_status cf_check_text(const cf_scene *scene, char **text) {
+  cf_check c = {.scene = scene};
+  char *warnings = NULL;
+  *text = NULL;
+  cf_status status = write_page(&c);
+  const cf_status ended = cf_writing_end(&c.warnings, &warnings);
+  if (status == CF_OK) status = ended;
+  if (status == CF_OK)
+    cf_writing_add(&c.page, "\n%s\n%s", *warnings != '\0' ? "warnings" : "no warnings", warnings);
+  cf_free(warnings);
+  const cf_status closed = cf_writing_end(&c.page, text);
+  if (status == CF_OK) return closed;
+  cf_free(*text);
+  *text = NULL;
+  return status;
+}

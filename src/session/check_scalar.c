@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One scalar's regime as text; see check_scalar.h and, for the numbers, stencil/regime.h. With a capacity C it is
+ * the diffusivity D = k/C that sets speeds. Where k, C or the flow vary, the largest D and the largest |u| count.
+ */
+#include "session/check_scalar.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/real.h"
+#include "stencil/regime.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* Points of the lattice on an axis: enough to find an extreme of anything that the cells could show. */
+enum { LATTICE_2D = 256, LATTICE_3D = 64 };
+
+/* Fewer cells than this do not carry a wave; more cells a step than this smear a front. */
+#define CELLS_A_WAVE     6.0
+#define CELLS_A_STEP     2.0
+#define STEPS_OF_NOTHING 10.0 /* dt/tau above this: memory is over within a step */
+
+/* --- sampling --------------------------------------------------------------------------------------------- */
+
+static void row_extremes(const cf_fn *f, const int n, const double *x, const double *y, const double *z,
+                         cf_extremes *e) {
+  double value[LATTICE_2D];
+  cf_fn_row(f, n, x, y, z, 0, value);
+  for (int i = 0; i < n; ++i) {
+    if (!isfinite(value[i])) e->least = e->largest = NAN;
+    if (value[i] < e->least) e->least = value[i];
+    if (value[i] > e->largest) e->largest = value[i];
+  }
+}
+
+cf_status cf_check_sample(const cf_scene *scene, const cf_fn *f, const char *key, cf_extremes *e) {
+  const double *size = scene->domain.size.value;
+  double place[3][LATTICE_2D], origin[3] = {0};
+  int n[3] = {1, 1, 1};
+  *e = (cf_extremes){f->value, f->value};
+  if (cf_fn_is_constant(f)) return CF_OK;
+  *e = (cf_extremes){INFINITY, -INFINITY};
+  for (int a = 0; a < scene->dim; ++a) {
+    if (scene->domain.origin.count > 0) origin[a] = scene->domain.origin.value[a];
+    n[a] = (int)CF_MIN(scene->domain.cells.value[a], scene->dim == 2 ? LATTICE_2D : LATTICE_3D);
+  }
+  double y[LATTICE_2D], z[LATTICE_2D];
+  for (int i = 0; i < n[0]; ++i) place[0][i] = origin[0] + (i + 0.5) * size[0] / n[0];
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i < n[0]; ++i) {
+        y[i] = origin[1] + (j + 0.5) * size[1] / n[1];
+        z[i] = scene->dim == 3 ? origin[2] + (k + 0.5) * size[2] / n[2] : 0;
+      }
+      row_extremes(f, n[0], place[0], y, z, e);
+      if (isnan(e->least)) return cf_scene_fail_at(scene, key, "%s is not finite somewhere in the box", key);
+    }
+  return CF_OK;
+}
+
+/* --- the numbers of a scalar ------------------------------------------------------------------------------ */
+
+typedef struct numbers {
+  const cf_scene_field *field;
+  const cf_scene_diffusion *d;
+  cf_extremes k, capacity;
+  double D; /* the largest k/C, m^2/s */
+  double c; /* the largest front speed, m/s; INFINITY without memory */
+  bool waves;
+} numbers;
+
+static cf_status find_numbers(const cf_scene *scene, const int field, numbers *n) {
+  n->field = &scene->fields.item[field];
+  n->d = &n->field->diffusion;
+  CF_TRY(cf_check_sample(scene, &n->d->k.fn, "diffusion.k", &n->k));
+  CF_TRY(cf_check_sample(scene, &n->d->capacity.fn, "diffusion.capacity", &n->capacity));
+  n->D = n->k.largest / n->capacity.least;
+  n->c = cf_regime_speed(n->D, n->d->tau, n->d->f_t);
+  n->waves = n->c > 0 && isfinite(n->c);
+  return CF_OK;
+}
+
+static void add(cf_check *c, const char *name, const char *text) {
+  cf_writing_add(&c->page, "  %-13s %s\n", name, text);
+}
+
+static void extremes_text(const cf_extremes *e, const char *unit, char *text, const size_t size) {
+  if (e->least == e->largest)
+    snprintf(text, size, "%.4g%s", e->least, unit);
+  else
+    snprintf(text, size, "%.4g to %.4g%s", e->least, e->largest, unit);
+}
+
+static void add_law(cf_check *c, const numbers *n) {
+  char text[256], k[64], capacity[64];
+  extremes_text(&n->k, " m^2/s", k, sizeof k);
+  extremes_text(&n->capacity, "", capacity, sizeof capacity);
+  const bool plain = n->capacity.least == 1 && n->capacity.largest == 1;
+  const char *law = n->D == 0                          ? "no diffusion"
+                    : n->d->tau == 0 || n->d->f_t == 1 ? "Fourier's law"
+                    : n->d->f_t == 0                   ? "Cattaneo's law"
+                                                       : "Cattaneo's and Fourier's law mixed";
+  snprintf(text, sizeof text, "k = %s, tau = %.4g s, F_T = %.4g%s%s: %s", k, n->d->tau, n->d->f_t,
+           plain ? "" : ", C = ", plain ? "" : capacity, law);
+  add(c, "diffusion", text);
+}
+
+/* --- waves ------------------------------------------------------------------------------------------------ */
+
+static void warn_of_short_waves(cf_check *c, const double length, const char *which) {
+  const double cells = length / c->scene->spacing;
+  if (cells < CELLS_A_WAVE)
+    cf_writing_add(&c->warnings,
+                   "  %s are %.2g cells long: finer cells show them (%g cells or more a wave)\n", which,
+                   cells, CELLS_A_WAVE);
+}
+
+static void add_waves(cf_check *c, const numbers *n) {
+  char text[256], name[128];
+  const double tau = n->d->tau, reach = 2 * n->c * tau;
+  const cf_wave_band band = cf_regime_wave_band(n->D, tau, n->d->f_t);
+  if (!n->waves) {
+    add(c, "waves", n->D == 0 ? "none" : "none: what diffuses is felt everywhere at once");
+    return;
+  }
+  snprintf(text, sizeof text, "%.4g m/s%s", n->c, isfinite(band.peak) ? " (the fastest of the band)" : "");
+  add(c, "front speed", text);
+  if (isinf(band.high)) {
+    snprintf(text, sizeof text, "shorter than %.3g m; they die out in %.3g s, after %.3g m",
+             2 * pi / band.low, 2 * tau, reach);
+    snprintf(name, sizeof name, "waves of %.40s", n->field->name);
+    warn_of_short_waves(c, 2 * pi / band.low, name);
+  } else {
+    snprintf(text, sizeof text, "%.3g to %.3g m long, fastest at %.3g m; Fourier's share blurs over %.3g m",
+             2 * pi / band.high, 2 * pi / band.low, 2 * pi / band.peak, cf_regime_blur(n->D, tau, n->d->f_t));
+    snprintf(name, sizeof name, "the fastest waves of %.40s", n->field->name);
+    warn_of_short_waves(c, 2 * pi / band.peak, name);
+  }
+  add(c, "waves", text);
+}
+
+static void add_stream(cf_check *c, const numbers *n) {
+  char text[256];
+  if (!n->waves || c->speed == 0) return;
+  const double H_c = cf_regime_number(c->speed, n->c);
+  const cf_regime regime = cf_regime_of(n->D, n->d->tau, n->d->f_t, c->speed);
+  const char *word = cf_regime_word(regime);
+  if (regime == CF_REGIME_SUPERCRITICAL)
+    snprintf(text, sizeof text, "%.4g: %s, a cone of half-angle %.3g degrees, seen over %.3g m", H_c, word,
+             cf_regime_cone_angle(H_c) * 180 / pi, cf_regime_cone_length(c->speed, n->d->tau, H_c));
+  else if (regime == CF_REGIME_CRITICAL)
+    snprintf(text, sizeof text, "1: %s, fronts stand still against the stream", word);
+  else
+    snprintf(text, sizeof text, "%.4g: %s, fronts go upstream at %.3g m/s", H_c, word, n->c - c->speed);
+  add(c, "H_c", text);
+}
+
+/* --- the step --------------------------------------------------------------------------------------------- */
+
+static void add_step(cf_check *c, const numbers *n) {
+  char text[256];
+  const double h = c->scene->spacing, tau = n->d->tau;
+  const char *name = n->field->name;
+  if (n->waves) {
+    const double cells = n->c * c->dt / h;
+    snprintf(text, sizeof text, "dt/tau = %.3g; a front crosses %.3g cells a step", c->dt / tau, cells);
+    add(c, "step", text);
+    if (c->dt > STEPS_OF_NOTHING * tau)
+      cf_writing_add(&c->warnings,
+                     "  dt is %.3g tau: memory of %.40s is over within a step, which leaves Fourier's law\n",
+                     c->dt / tau, name);
+    else if (cells > CELLS_A_STEP)
+      cf_writing_add(&c->warnings,
+                     "  fronts of %.40s cross %.3g cells a step and get smeared: time.dt of %.2g s or less\n",
+                     name, cells, CELLS_A_STEP * h / n->c);
+  } else if (n->D > 0) {
+    snprintf(text, sizeof text, "k dt/h^2 = %.3g", n->D * c->dt / (h * h));
+    add(c, "step", text);
+  }
+}
+
+/* How many levels the hierarchy can have: the finest axes are halved until a line is left. */
+static int most_levels(const cf_scene *scene) {
+  double width[3] = {1, 1, 1};
+  long n[3] = {1, 1, 1};
+  for (int a = 0; a < scene->dim; ++a) n[a] = scene->domain.cells.value[a];
+  int levels = 1;
+  for (;; ++levels) {
+    double finest = INFINITY;
+    int wide = 0;
+    for (int a = 0; a < scene->dim; ++a) {
+      if (n[a] > 1) finest = CF_MIN(finest, width[a]);
+      if (n[a] > 1) ++wide;
+    }
+    if (wide <= 1) return levels;
+    for (int a = 0; a < scene->dim; ++a) {
+      if (n[a] == 1 || width[a] > 1.5 * finest) continue;
+      n[a] /= 2;
+      width[a] *= 2;
+    }
+  }
+}
+
+/* Levels of multigrid that a stage uses: down to where diffusion is weak between neighbours. */
+static int levels_of(const cf_scene *scene, const numbers *n, const double sigma) {
+  const int most =
+      scene->solver.levels > 0 ? (int)CF_MIN(scene->solver.levels, most_levels(scene)) : most_levels(scene);
+  if (n->k.least != n->k.largest || n->capacity.least != n->capacity.largest) return most;
+  int levels = 1;
+  for (double off = 2 * scene->dim * sigma; off > 3 && levels < most; off /= 4) ++levels;
+  return levels;
+}
+
+static void add_solver(cf_check *c, const numbers *n) {
+  char text[256];
+  const bool paper = n->d->scheme == CF_SCENE_SCHEME_PAPER;
+  const double delta = (paper ? 1 : 1 - sqrt(0.5)) * c->dt, h = c->scene->spacing;
+  const double sigma = cf_regime_sigma(cf_regime_stage(delta, n->d->tau, n->d->f_t), n->D, h);
+  const int levels = levels_of(c->scene, n, sigma);
+  snprintf(
+      text, sizeof text, "%s; sigma = %.3g, %d level%s of multigrid",
+      paper ? "one stage of backward Euler (eqs 11 to 18)" : "two implicit stages (sdirk2), second order",
+      sigma, levels, levels == 1 ? "" : "s");
+  add(c, "scheme", text);
+  if (paper && n->waves && n->c * c->dt > 0.5 * h)
+    cf_writing_add(&c->warnings, "  scheme paper smears the fronts of %.40s: `scheme: default` keeps them\n",
+                   n->field->name);
+}
+
+/* --- everything ------------------------------------------------------------------------------------------- */
+
+cf_status cf_check_scalar(cf_check *c, const int field) {
+  numbers n;
+  CF_TRY(find_numbers(c->scene, field, &n));
+  cf_writing_add(&c->page, "\n%s\n", n.field->name);
+  add_law(c, &n);
+  add_waves(c, &n);
+  add_stream(c, &n);
+  add_step(c, &n);
+  if (n.D > 0) add_solver(c, &n);
+  if (n.waves && n.d->f_t < 0.1)
+    cf_writing_add(&c->page, "  %-13s %s\n", "note",
+                   "values may fall below 0 where fronts meet, as those of the exact solution do");
+  return CF_OK;
+}
