@@ -36,7 +36,7 @@
 
 #if defined(__clang__)
 #define CF_ROW_LOOP  CF_PRAGMA(omp simd)
-#define CF_AXIS_LOOP CF_PRAGMA(unroll(3))
+#define CF_AXIS_LOOP CF_PRAGMA(unroll)
 #else
 #define CF_ROW_LOOP  CF_PRAGMA(omp simd)
 #define CF_AXIS_LOOP CF_PRAGMA(GCC unroll 3)
