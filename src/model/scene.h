@@ -3,7 +3,7 @@
  * The scene: every key a scene file may have, once, in the tables below; and the struct that comes of it.
  *
  * cf_scene_read gives a resolved scene: what was left out has its default, fields.NAME.diffusion and
- * fields.NAME.walls are complete for every scalar, front_speed has been turned into k or tau, lists that go
+ * fields.NAME.walls are complete for every scalar, front_speed and its kin have become k, tau and f_t, lists that go
  * by axis have one entry an axis, and everything that can be checked without a grid has been checked. So the
  * program reads scene->fields.item[i].diffusion.k and never asks what was given.
  *
@@ -102,23 +102,38 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(frames, number, "0", "1/s", "[0, inf)",                                                                 \
     "Output frames per unit of time; 0: only the first and the last state")
 
-#define CF_DIFFUSION_TABLE(P, R)                                                                           \
-  P(k, profile, "0", "m^2/s", "[0, inf)", "Diffusivity k of eqs 7 to 10; an expression in x, y, z")        \
-  P(tau, number, "0", "s", "[0, inf)", "Relaxation time tau of the flux, eqs 7 to 10; 0 is Fourier's law") \
-  P(f_t, number, "0", "", "[0, 1]",                                                                        \
-    "The fraction F_T of Fourier's law in the flux: 0 is Cattaneo's law, 1 Fourier's")                     \
-  P(front_speed, number, CF_NONE, "m/s", "(0, inf)",                                                       \
-    "Speed c of the front, in place of k or of tau: c^2 = (1 - f_t) k/tau")                                \
-  P(capacity, profile, "1", "", "(0, inf)",                                                                \
-    "Capacity C of eq. 1, what one unit of the scalar needs; an expression in x, y, z")                    \
-  P(scheme, word, "default", "", CF_WORDS(CF_SCHEME_WORDS),                                                \
-    "default: the stable choice for tau and f_t; paper: eqs 11 to 18 as printed; sdirk2: two stages, "     \
-    "second order")                                                                                        \
-  P(flux_rate, word, "objective", "", CF_WORDS(CF_FLUX_RATE_WORDS),                                        \
-    "How a flux is carried by the flow: material (eq. 10), conservative (eq. 9), objective (turns and "    \
-    "stretches "                                                                                           \
-    "with the flow)")                                                                                      \
-  P(front_filter, word, "auto", "", CF_WORDS(CF_FILTER_WORDS),                                             \
+#define CF_DIFFUSION_TABLE(P, R)                                                                             \
+  P(k, profile, "0", "m^2/s", "[0, inf)", "Diffusivity k of eqs 7 to 10; an expression in x, y, z")          \
+  P(tau, number, "0", "s", "[0, inf)", "Relaxation time tau of the flux, eqs 7 to 10; 0 is Fourier's law")   \
+  P(f_t, number, "0", "", "[0, 1]",                                                                          \
+    "The fraction F_T of Fourier's law in the flux: 0 is Cattaneo's law, 1 Fourier's")                       \
+  P(front_speed, number, CF_NONE, "m/s", "(0, inf)",                                                         \
+    "In place of k or of tau: the speed c of the front, c^2 = (1 - f_t) k/tau")                              \
+  P(reach, number, CF_NONE, "m", "(0, inf)",                                                                 \
+    "In place of k or of tau: how far a front comes before 5 % of it is left, 6 c tau")                      \
+  P(blur, number, CF_NONE, "m", "[0, inf)",                                                                  \
+    "In place of f_t: the length over which fronts are blurred, blur^2 = f_t k tau")                         \
+  P(cone_angle, number, CF_NONE, "degree", "(0, 90)",                                                        \
+    "In place of front_speed: the half-angle of the cone behind a source in the wind, sin = c/wind")         \
+  P(visible_length, number, CF_NONE, "m", "(0, inf)",                                                        \
+    "In place of k or of tau: the length over which that cone is straight, 2 tau wind cos^2(cone_angle)")    \
+  P(wind, number, CF_NONE, "m/s", "(0, inf)",                                                                \
+    "The speed that cone_angle and visible_length refer to; left out: that of `velocity`, if it is uniform") \
+  P(thickness, number, CF_NONE, "m", "(0, inf)", "Of the slab that arrival and saturation refer to")         \
+  P(arrival, number, CF_NONE, "s", "(0, inf)",                                                               \
+    "In place of front_speed: when the front is through the slab, thickness/c")                              \
+  P(saturation, number, CF_NONE, "s", "(0, inf)",                                                            \
+    "In place of k: when a slab that takes up from one side is 95 % full, 1.129 thickness^2/k")              \
+  P(capacity, profile, "1", "", "(0, inf)",                                                                  \
+    "Capacity C of eq. 1, what one unit of the scalar needs; an expression in x, y, z")                      \
+  P(scheme, word, "default", "", CF_WORDS(CF_SCHEME_WORDS),                                                  \
+    "default: the stable choice for tau and f_t; paper: eqs 11 to 18 as printed; sdirk2: two stages, "       \
+    "second order")                                                                                          \
+  P(flux_rate, word, "objective", "", CF_WORDS(CF_FLUX_RATE_WORDS),                                          \
+    "How a flux is carried by the flow: material (eq. 10), conservative (eq. 9), objective (turns and "      \
+    "stretches "                                                                                             \
+    "with the flow)")                                                                                        \
+  P(front_filter, word, "auto", "", CF_WORDS(CF_FILTER_WORDS),                                               \
     "Takes the ripples off sharp fronts; auto: on where f_t is below 0.01")
 
 #define CF_ADVECTION_TABLE(P, R)                                                                  \

@@ -2,13 +2,6 @@
  *
  * The fields of a scene made complete: names, initial values, and for every scalar its own diffusion and
  * walls, with what it leaves out taken from the common ones.
- *
- * The speed of the front, c^2 = (1 - f_t) k/tau, may stand in place of k or of tau:
- *
- *     k and c:    tau = (1 - f_t) k/c^2
- *     tau and c:  k = c^2 tau/(1 - f_t)
- *
- * Afterwards front_speed is not given (NaN), so a resolved scene does not say the same thing twice.
  */
 #include <math.h>
 #include <stdio.h>
@@ -16,41 +9,12 @@
 
 #include "io/scene.h"
 #include "model/scene_check.h"
+#include "model/scene_params.h"
 
 enum { KEY_MAX = 160 };
 
 /* --- diffusion ---------------------------------------------------------------------------------------------
  */
-
-static cf_status fail_speed(const cf_scene *scene, const char *path, const char *sentence) {
-  char key[KEY_MAX];
-  snprintf(key, sizeof key, "%s.front_speed", path);
-  return cf_scene_fail_at(scene, key, "%s %s", key, sentence);
-}
-
-/* Turns front_speed into whichever of k and tau stands beside it. */
-static cf_status resolve_speed(cf_scene *scene, const char *path, cf_scene_diffusion *d) {
-  if (!d->given.front_speed) return CF_OK;
-  const double speed = d->front_speed, part = 1.0 - d->f_t;
-  if (d->given.k && d->given.tau)
-    return fail_speed(scene, path, "does not go with both k and tau: any two of the three give the third");
-  if (!d->given.k && !d->given.tau) return fail_speed(scene, path, "needs k or tau beside it");
-  if (part <= 0.0) return fail_speed(scene, path, "does not go with f_t = 1: Fourier's law has no front");
-  if (d->given.k && !cf_fn_is_constant(&d->k.fn))
-    return fail_speed(scene, path, "needs a k that is one number");
-  if (d->given.tau && d->tau <= 0.0) return fail_speed(scene, path, "needs tau > 0");
-  if (d->given.k) d->tau = part * d->k.fn.value / (speed * speed);
-  if (d->given.tau) {
-    d->k.fn = cf_fn_constant(speed * speed * d->tau / part);
-    CF_TRY(cf_config_text(scene->config, &d->k.text, "%.17g", d->k.fn.value));
-  }
-  if (!isfinite(d->tau) || !isfinite(d->k.fn.value))
-    return fail_speed(scene, path, "gives a k or tau that is not finite");
-  d->front_speed = (double)NAN;
-  d->given.front_speed = false;
-  d->given.k = d->given.tau = true;
-  return CF_OK;
-}
 
 static cf_status resolve_own_diffusion(cf_scene *scene, cf_scene_field *field) {
   char path[KEY_MAX];
@@ -58,7 +22,8 @@ static cf_status resolve_own_diffusion(cf_scene *scene, cf_scene_field *field) {
   const cf_scene_diffusion *common = &scene->diffusion;
   snprintf(path, sizeof path, "fields.%s.diffusion", field->name);
   if (!d->given.f_t) d->f_t = common->f_t;
-  CF_TRY(resolve_speed(scene, path, d));
+  if (!d->given.capacity) d->capacity = common->capacity;
+  CF_TRY(cf_scene_resolve_params(scene, path, d));
 #define CF_INHERIT(name, type, fallback, unit, range, doc) \
   if (!d->given.name) d->name = common->name;
   CF_DIFFUSION_TABLE(CF_INHERIT, )
@@ -163,7 +128,7 @@ static cf_status check_two_names(const cf_scene *scene) {
 cf_status cf_scene_resolve_fields(cf_scene *scene) {
   inherit_walls(scene, &scene->domain.walls, NULL);
   CF_TRY(check_walls(scene, "domain.walls", &scene->domain.walls));
-  CF_TRY(resolve_speed(scene, "diffusion", &scene->diffusion));
+  CF_TRY(cf_scene_resolve_params(scene, "diffusion", &scene->diffusion));
   if (scene->fields.count == 0) CF_TRY(default_field(scene));
   for (int i = 0; i < scene->fields.count; ++i) {
     cf_scene_field *field = &scene->fields.item[i];
