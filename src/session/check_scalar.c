@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/real.h"
+#include "model/scene_params.h"
 #include "stencil/regime.h"
 
 static const double pi = 3.14159265358979323846;
@@ -157,6 +158,16 @@ static void add_stream(cf_check *c, const numbers *n) {
   add(c, "H_c", text);
 }
 
+/* The keys that could stand for k, tau and f_t; the thickness is that of the box. */
+static void add_words(cf_check *c, const numbers *n) {
+  char text[512];
+  double side = c->scene->domain.size.value[0];
+  for (int a = 1; a < c->scene->dim; ++a) side = CF_MIN(side, c->scene->domain.size.value[a]);
+  const cf_scene_measures m = cf_scene_measure(n->D, n->d->tau, n->d->f_t, c->speed, side);
+  cf_scene_measures_text(&m, side, text, sizeof text);
+  if (n->D > 0) add(c, "same as", text);
+}
+
 /* --- the step --------------------------------------------------------------------------------------------- */
 
 static void add_step(cf_check *c, const numbers *n) {
@@ -238,6 +249,7 @@ cf_status cf_check_scalar(cf_check *c, const int field) {
   add_law(c, &n);
   add_waves(c, &n);
   add_stream(c, &n);
+  add_words(c, &n);
   add_step(c, &n);
   if (n.D > 0) add_solver(c, &n);
   if (n.waves && n.d->f_t < 0.1)
