@@ -134,30 +134,47 @@ static bool is_inside(const cf_plot *plot, const double at[2]) {
          at[1] <= plot->y + plot->height;
 }
 
-/* The last place of a line that can be seen; false if it is all outside. */
-static bool last_seen(const cf_plot *plot, const int count, const double (*at)[2], double seen[2]) {
+/* The last place of a line that can be seen, and the direction there; false if it is all outside. */
+static bool last_seen(const cf_plot *plot, const int count, const double (*at)[2], double seen[2],
+                      double along[2]) {
   bool found = false;
   for (int i = 0; i + 1 < count; ++i)
     for (int n = 0; n <= 64; ++n) {
-      const double s = n / 64.0;
-      const double here[2] = {at[i][0] + s * (at[i + 1][0] - at[i][0]),
-                              at[i][1] + s * (at[i + 1][1] - at[i][1])};
+      const double s = n / 64.0, dx = at[i + 1][0] - at[i][0], dy = at[i + 1][1] - at[i][1];
+      const double here[2] = {at[i][0] + s * dx, at[i][1] + s * dy}, length = CF_MAX(hypot(dx, dy), 1e-9);
       if (!is_inside(plot, here)) continue;
       seen[0] = here[0], seen[1] = here[1], found = true;
+      along[0] = dx / length, along[1] = dy / length;
     }
   return found;
 }
 
-/* Beside the end of its line, on the side with room, inside the frame. */
-static cf_status line_label(cf_canvas *c, const cf_plot *plot, const cf_polyline *line, const double end[2]) {
-  const cf_lettering l = {.size = plot->font, .colour = line->colour, .outline = 1};
-  const double width = cf_text_width(plot->font, line->label), gap = 0.6 * plot->font;
-  const double high = cf_text_height(plot->font);
-  const bool right_half = end[0] > plot->x + plot->width / 2.0;
-  double x = right_half ? end[0] - width - gap : end[0] + gap, y = end[1] + high / 2;
-  x = CF_MAX(CF_MIN(x, plot->x + plot->width - width - gap), plot->x + gap);
-  y = CF_MAX(CF_MIN(y, plot->y + plot->height - gap), plot->y + high + gap);
-  return cf_text_draw(c, &l, x, y, line->label);
+/* The centre of a box of this size that touches `end` on the side `way`; false if the box is not in the plot. */
+static bool beside(const cf_plot *plot, const double end[2], const double way[2], const double size[2],
+                   double centre[2]) {
+  const double far = fabs(way[0]) * size[0] / 2 + fabs(way[1]) * size[1] / 2 + 0.5 * plot->font;
+  bool inside = true;
+  for (int a = 0; a < 2; ++a) {
+    const double low = (a == 0 ? plot->x : plot->y) + size[a] / 2 + 4;
+    const double high = (a == 0 ? plot->x + plot->width : plot->y + plot->height) - size[a] / 2 - 4;
+    const double wanted = end[a] + far * way[a];
+    centre[a] = CF_MAX(CF_MIN(wanted, high), low);
+    inside = inside && centre[a] == wanted;
+  }
+  return inside;
+}
+
+/* Behind the end of its line if there is room, else on one of its sides. */
+static cf_status line_label(cf_canvas *c, const cf_plot *plot, const cf_polyline *line, const double end[2],
+                            const double along[2]) {
+  const cf_lettering l = {.size = plot->font, .colour = line->colour, .align = 0.5, .outline = 1};
+  const double size[2] = {cf_text_width(plot->font, line->label), cf_text_height(plot->font)};
+  const double back[2] = {end[0] - along[0] * size[0] / 2, end[1] - along[1] * size[0] / 2};
+  const double left[2] = {along[1], -along[0]}, right[2] = {-along[1], along[0]};
+  double centre[2];
+  if (!beside(plot, end, along, size, centre) && !beside(plot, back, left, size, centre))
+    beside(plot, back, right, size, centre);
+  return cf_text_draw(c, &l, centre[0], centre[1] + size[1] / 2, line->label);
 }
 
 static cf_status draw_line(cf_canvas *c, const cf_plot *plot, const cf_polyline *line, double (*at)[2]) {
@@ -167,14 +184,14 @@ static cf_status draw_line(cf_canvas *c, const cf_plot *plot, const cf_polyline 
                       .dash = line->dash,
                       .gap = 0.7 * line->dash + width,
                       .clip = {plot->x, plot->y, plot->width, plot->height}};
-  double end[2];
+  double end[2], along[2];
   for (int i = 0; i < line->count; ++i) {
     at[i][0] = plot->x + pixel_at(plot, 0, line->at[i][0]);
     at[i][1] = plot->y + plot->height - pixel_at(plot, 1, line->at[i][1]);
   }
   CF_TRY(cf_canvas_stroke(c, &pen, line->count, (const double(*)[2])at));
-  if (line->label == NULL || !last_seen(plot, line->count, (const double(*)[2])at, end)) return CF_OK;
-  return line_label(c, plot, line, end);
+  if (line->label == NULL || !last_seen(plot, line->count, (const double(*)[2])at, end, along)) return CF_OK;
+  return line_label(c, plot, line, end, along);
 }
 
 cf_status cf_plot_lines(cf_canvas *c, const cf_plot *plot, const int lines, const cf_polyline *line) {
@@ -202,8 +219,12 @@ double cf_plot_bar_room(const double font, const cf_scale *scale, const int heig
 /* A point at an end of the bar where values go on beyond it. */
 static void bar_point(cf_canvas *c, const int x, const int y, const int width, const int up,
                       const cf_colour colour) {
-  for (int j = 0; 2 * j < width; ++j)
-    cf_canvas_fill(c, x + j, y + (up ? -2 - j : 1 + j), width - 2 * j, 1, colour);
+  for (int j = 0; 2 * j < width; ++j) {
+    const int row = y + (up ? -2 - j : 1 + j);
+    cf_canvas_fill(c, x + j, row, width - 2 * j, 1, colour);
+    cf_canvas_set(c, x + j - 1, row, cf_plot_faint);
+    cf_canvas_set(c, x + width - j, row, cf_plot_faint);
+  }
 }
 
 cf_status cf_plot_bar(cf_canvas *c, const int box[4], const double font, const cf_scale *scale) {
