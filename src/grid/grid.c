@@ -9,7 +9,7 @@ cf_status cf_grid_init(cf_grid *g, const int dim, const int *cells, const double
   *g = (cf_grid){.h = h, .threads = 1};
   if (!(h > 0) || !isfinite(h)) return cf_fail(CF_BAD_ARGUMENT, "cell width h = %g m: must be positive", h);
   const int n[3] = {cells[0], cells[1], dim == 3 ? cells[2] : 1};
-  for (int a = 0; a < dim; ++a) g->origin[a] = origin != NULL ? origin[a] : 0;
+  for (int a = 0; a < CF_MIN(dim, 3); ++a) g->origin[a] = origin != NULL ? origin[a] : 0;
   return cf_box_init(&g->box, dim, n, CF_HALO);
 }
 
