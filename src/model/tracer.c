@@ -268,11 +268,13 @@ static cf_status tracer_create(void **model, const cf_scene *scene, cf_registry 
   return CF_OK;
 }
 
-/* A steady velocity was sampled at creation and the checkpoint holds the same; one in time is sampled anew.
- */
+/* The velocity has been read back as the last step had it: the length of the next one may hang on that. */
 static cf_status tracer_restored(void *model) {
   tracer *m = model;
-  return m->moves ? set_velocity(m, 0) : CF_OK;
+  for (int s = 0; s < 2; ++s)
+    if (m->by_scheme[s] != NULL)
+      CF_TRY(cf_advect_set_velocity(m->by_scheme[s], m->u, &m->scene->domain.walls.walls));
+  return CF_OK;
 }
 
 /* --- a step -----------------------------------------------------------------------------------------------
