@@ -219,7 +219,8 @@ cf_status cf_sim_save(const cf_sim *sim, const char *path);
 
 /* Puts the simulation into the state that was saved from one of the same scene; stepping on gives the same bits
  * as if it had never been saved. Checkpoints of `cattaneo run` can be loaded as well. CF_BAD_FILE: the file is
- * damaged, or of another scene, shape or precision, and the sentence says which; the state is as it was. */
+ * damaged, or of another scene, shape or precision, and the sentence says which; the state is as it was. After
+ * CF_NO_MEMORY it may be half loaded: load once more. */
 cf_status cf_sim_load(cf_sim *sim, const char *path);
 
 /* ========================================================================================================
