@@ -40,7 +40,7 @@ programs: setup
 # --- words that run something -----------------------------------------------------------------------------
 
 demo: programs
-	@examples/cone/demo.sh $(BUILD)/bin/cattaneo out/cone
+	@CATTANEO=$(abspath $(BUILD))/bin/cattaneo examples/cone/demo.sh out/cone
 
 test: setup-tests
 	@$(MAKE) --no-print-directory configure

@@ -10,7 +10,7 @@ add_custom_target(stamp
   COMMAND ${CMAKE_COMMAND} -DGIT=${GIT_EXECUTABLE} -DSOURCE=${CMAKE_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
     -DOUT=${stamp} -P ${CMAKE_SOURCE_DIR}/cmake/stamp.cmake
   BYPRODUCTS ${stamp}
-  COMMENT "")
+  COMMENT "Looking which commit this is")
 set_source_files_properties(${CMAKE_SOURCE_DIR}/src/base/version.c PROPERTIES
   COMPILE_OPTIONS "-include;${stamp}"
   OBJECT_DEPENDS ${stamp})
