@@ -11,6 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/real.h"
 #include "testing.h"
 
 /* An empty folder below the build, the same for every run of the test. */
@@ -18,7 +19,8 @@ static inline const char *folder_fresh(const char *name) {
   static char path[8][512];
   static int next;
   char *p = path[next++ % 8], command[1200];
-  snprintf(p, 512, "%s/scratch/%s", CF_BINARY_DIR, name);
+  /* One for each precision: both tests may run at once. */
+  snprintf(p, 512, "%s/scratch/%s/%s", CF_BINARY_DIR, CF_PRECISION, name);
   snprintf(command, sizeof command, "rm -rf '%s' && mkdir -p '%s'", p, p);
   assert_int_equal(system(command), 0);
   return p;
