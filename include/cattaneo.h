@@ -305,7 +305,7 @@ typedef struct cf_fn {
  *   insulated  no flux passes
  *   open       the scalar is 0 on the wall face (and what the flow brings in is 0)
  *   value      the scalar is a given function of place and time on the wall face
- *   radiate    the flux is c (phi - phi_inf): waves leave
+ *   radiate    the flux is C c (phi - phi_inf), c the front's speed: waves leave; without waves it is value
  *   periodic   the opposite wall is the neighbour; given for both sides of an axis
  * Upper case as here, lower case as a scene writes it. */
 #define CF_WALL_LIST(W) \
@@ -357,10 +357,20 @@ typedef struct cf_solve_report {
  *     for (int i = 0; i < 100; ++i) cf_diffuse_step(d, i*dt, dt, phi, q, &ledger, &report);
  */
 
-/* CF_DIFFUSE_PAPER   eqs 11-18 as printed: backward Euler, W taken at the old time. First order.
- * CF_DIFFUSE_SDIRK2  two stages of (1 - 1/sqrt(2)) dt (Alexander 1977): second order, L-stable, and the sum of
- *                    C phi is kept to round-off whatever the solver's tolerance. */
-typedef enum cf_diffuse_scheme { CF_DIFFUSE_PAPER, CF_DIFFUSE_SDIRK2 } cf_diffuse_scheme;
+/* CF_DIFFUSE_PAPER     eqs 11-18 as printed: backward Euler, W taken at the old time. First order.
+ * CF_DIFFUSE_SDIRK2    two stages of (1 - 1/sqrt(2)) dt (Alexander 1977): second order, L-stable.
+ * CF_DIFFUSE_LEAPFROG  explicit and in place: q <- E q - (1 - E)(1 - F_T) k grad phi with E = exp(-dt/tau), then
+ *                      phi <- phi - dt div q/C, in as many substeps as keep it stable. Second order. The part
+ *                      with F_T, if any, is implicit, before and after.
+ * CF_DIFFUSE_WAVE      explicit, fifth-order weighted reconstruction of both fields, three Runge-Kutta stages: the
+ *                      sharpest fronts. k and C one number each, F_T = 0, 0 < tau < INFINITY.
+ * All but the first keep the sum of C phi to round-off, whatever the solver's tolerance. */
+typedef enum cf_diffuse_scheme {
+  CF_DIFFUSE_PAPER,
+  CF_DIFFUSE_SDIRK2,
+  CF_DIFFUSE_LEAPFROG,
+  CF_DIFFUSE_WAVE
+} cf_diffuse_scheme;
 
 /* What acts on the scalar; a NULL function does not act. Each writes every cell (face) of its fields at time t,
  * s. What it returns other than CF_OK ends the step and is returned by it. */
@@ -379,7 +389,10 @@ typedef struct cf_diffuse_params {
   double f_t;     /* F_T, 0 ... 1 */
   cf_diffuse_scheme scheme;
   cf_solve_options solver;
-  int levels; /* of multigrid; 0: as needed */
+  int levels;        /* of multigrid; 0: as needed */
+  bool front_filter; /* takes the ripples off steep fronts after every (sub)step; CF_DIFFUSE_WAVE needs none */
+  bool positive;     /* CF_DIFFUSE_LEAPFROG: fluxes are limited so that phi >= 0 stays so; the law itself goes
+                        below 0 behind fronts in 2D and 3D */
 } cf_diffuse_params;
 
 /* Where the scalar's sum came from and went, in absolute amounts (integral of C phi). With `first` what was

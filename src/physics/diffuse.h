@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Cattaneo-Fourier diffusion of one scalar in a medium at rest: cf_diffuse_* and the ledger of cattaneo.h, with
- * the equations and schemes. (What moves is physics/advect.h's.) Nothing more is known outside diffuse.c.
+ * the equations and schemes; and what models use beside that. (What moves is physics/advect.h's.)
  */
 #ifndef CF_PHYSICS_DIFFUSE_H
 #define CF_PHYSICS_DIFFUSE_H
@@ -11,5 +11,15 @@
 #include "grid/field.h"
 #include "grid/grid.h"
 #include "solve/helmholtz.h"
+
+/* As cf_diffuse_step with s = div q_C in cells in place of q: the same phi to round-off with one array of memory
+ * in place of dim. s belongs to the walls that the object was made with (their faces are part of the divergence).
+ * CF_BAD_ARGUMENT: a source acts on q, a wall radiates, `positive`, or the scheme is CF_DIFFUSE_WAVE: these need
+ * q. What passes through walls is counted as one amount. */
+cf_status cf_diffuse_step_scalar(cf_diffuse *d, double t, double dt, cf_cell phi, cf_cell s,
+                                 cf_ledger *ledger, cf_solve_report *report);
+
+/* Explicit substeps that a step of dt takes; 1 for implicit schemes. */
+double cf_diffuse_substeps(const cf_diffuse *d, double dt);
 
 #endif
