@@ -31,6 +31,9 @@ typedef struct cf_model {
   /* The step that `dt: auto` takes at time t, s. */
   double (*natural_dt)(const void *model, double t);
 
+  /* A line about how it computes, for the log: false past the last. NULL: nothing to say. */
+  bool (*describe)(const void *model, int line, char *text, size_t size);
+
   /* The state from t to t + dt. */
   cf_status (*step)(void *model, double t, double dt, cf_step_report *report);
 

@@ -24,8 +24,10 @@
 
 /* --- words: W(UPPER, as a scene writes it) ---------------------------------------------------- */
 
-#define CF_MODEL_WORDS(W)     W(TRACER, tracer)
-#define CF_SCHEME_WORDS(W)    W(DEFAULT, default) W(PAPER, paper) W(SDIRK2, sdirk2)
+#define CF_MODEL_WORDS(W) W(TRACER, tracer)
+#define CF_SCHEME_WORDS(W) \
+  W(DEFAULT, default) W(PAPER, paper) W(SDIRK2, sdirk2) W(LEAPFROG, leapfrog) W(WAVE, wave)
+#define CF_SWITCH_WORDS(W)    W(OFF, off) W(ON, on)
 #define CF_FLUX_RATE_WORDS(W) W(MATERIAL, material) W(CONSERVATIVE, conservative) W(OBJECTIVE, objective)
 #define CF_FILTER_WORDS(W)    W(AUTO, auto) W(ON, on) W(OFF, off)
 #define CF_ADVECTION_WORDS(W) W(PPM, ppm) W(LINEAR, linear) W(WENO5, weno5) W(CUBIC, cubic)
@@ -52,6 +54,11 @@ enum {
 enum {
 #define CF_SCENE_ENUM_PREFIX(upper) CF_SCENE_FILTER_##upper
   CF_FILTER_WORDS(CF_SCENE_ENUM)
+#undef CF_SCENE_ENUM_PREFIX
+};
+enum {
+#define CF_SCENE_ENUM_PREFIX(upper) CF_SCENE_SWITCH_##upper
+  CF_SWITCH_WORDS(CF_SCENE_ENUM)
 #undef CF_SCENE_ENUM_PREFIX
 };
 enum {
@@ -127,14 +134,17 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(capacity, profile, "1", "", "(0, inf)",                                                                  \
     "Capacity C of eq. 1, what one unit of the scalar needs; an expression in x, y, z")                      \
   P(scheme, word, "default", "", CF_WORDS(CF_SCHEME_WORDS),                                                  \
-    "default: the stable choice for tau and f_t; paper: eqs 11 to 18 as printed; sdirk2: two stages, "       \
-    "second order")                                                                                          \
+    "default: leapfrog or sdirk2, whichever costs less; paper: eqs 11 to 18 as printed; sdirk2: two "        \
+    "implicit stages; leapfrog: explicit substeps; wave: explicit, sharpest fronts (f_t = 0, one k)")        \
   P(flux_rate, word, "objective", "", CF_WORDS(CF_FLUX_RATE_WORDS),                                          \
     "How a flux is carried by the flow: material (eq. 10), conservative (eq. 9), objective (turns and "      \
     "stretches "                                                                                             \
     "with the flow)")                                                                                        \
   P(front_filter, word, "auto", "", CF_WORDS(CF_FILTER_WORDS),                                               \
-    "Takes the ripples off sharp fronts; auto: on where f_t is below 0.01")
+    "Takes the ripples off sharp fronts; auto: on where f_t is below 0.01")                                  \
+  P(positivity, word, "off", "", CF_WORDS(CF_SWITCH_WORDS),                                                  \
+    "on: limits the flux to |q| <= c phi, so that what is >= 0 stays so; the law itself falls below 0 "      \
+    "behind fronts in 2D and 3D. Goes with scheme default or leapfrog")
 
 #define CF_ADVECTION_TABLE(P, R)                                                                  \
   P(scheme, word, "ppm", "", CF_WORDS(CF_ADVECTION_WORDS),                                        \

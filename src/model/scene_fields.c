@@ -31,6 +31,30 @@ static cf_status resolve_own_diffusion(cf_scene *scene, cf_scene_field *field) {
   return CF_OK;
 }
 
+/* The key of a scalar's own diffusion, or the common one where it has none. */
+static cf_status fail_scheme(const cf_scene *scene, const cf_scene_field *field, const char *name,
+                             const char *sentence) {
+  char key[KEY_MAX];
+  snprintf(key, sizeof key, "fields.%s.diffusion.%s", field->name, name);
+  if (!cf_scene_has(scene, key)) snprintf(key, sizeof key, "diffusion.%s", name);
+  return cf_scene_fail_at(scene, key, "%s %s", key, sentence);
+}
+
+/* What schemes cannot do. */
+static cf_status check_scheme(const cf_scene *scene, const cf_scene_field *field) {
+  const cf_scene_diffusion *d = &field->diffusion;
+  const bool wave = d->scheme == CF_SCENE_SCHEME_WAVE, positive = d->positivity == CF_SCENE_SWITCH_ON;
+  if (wave && d->f_t > 0) return fail_scheme(scene, field, "f_t", "must be 0 with scheme: wave");
+  if (wave && !(d->tau > 0)) return fail_scheme(scene, field, "tau", "must be above 0 with scheme: wave");
+  if (wave && !cf_fn_is_constant(&d->k.fn))
+    return fail_scheme(scene, field, "k", "must be one number with scheme: wave");
+  if (wave && !cf_fn_is_constant(&d->capacity.fn))
+    return fail_scheme(scene, field, "capacity", "must be one number with scheme: wave");
+  if (positive && d->scheme != CF_SCENE_SCHEME_DEFAULT && d->scheme != CF_SCENE_SCHEME_LEAPFROG)
+    return fail_scheme(scene, field, "positivity", "goes with scheme: default or leapfrog");
+  return CF_OK;
+}
+
 /* --- walls ------------------------------------------------------------------------------------ */
 
 static const char *side_name(const int axis, const int high) {
@@ -105,6 +129,7 @@ static cf_status resolve_scalar(cf_scene *scene, cf_scene_field *field) {
   snprintf(key, sizeof key, "fields.%s.initial", field->name);
   CF_TRY(cf_scene_check_axes(scene, &field->initial, field->given.initial, 1, key));
   CF_TRY(resolve_own_diffusion(scene, field));
+  CF_TRY(check_scheme(scene, field));
   inherit_walls(scene, &field->walls, &scene->domain.walls);
   snprintf(key, sizeof key, "fields.%s.walls", field->name);
   return check_walls(scene, key, &field->walls);
