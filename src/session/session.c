@@ -170,6 +170,14 @@ static void note_start(cf_session *s) {
   s->started = s->checkpoint_clock = clock_now();
 }
 
+/* How the model computes, once in the log of a run. */
+static void say_plans(cf_session *s) {
+  const cf_model *model = s->sim->model;
+  char line[CF_SENTENCE_MAX];
+  for (int i = 0; model->describe != NULL && model->describe(s->sim->state, i, line, sizeof line); ++i)
+    say(s, line);
+}
+
 static cf_status write_first_frame(cf_session *s) {
   CF_TRY(write_metrics(s));
   return cf_output_frame(s->sim, s->folder.path.text);
@@ -187,6 +195,7 @@ static cf_status start(cf_session *s, const char *scene, const int overrides, co
   CF_TRY(write_run_yaml(s));
   CF_TRY(open_metrics(s, false, 0));
   note_start(s);
+  say_plans(s);
   return write_first_frame(s);
 }
 
