@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
 # The libraries export what include/cattaneo.h lists in CF_PUBLIC_LIST and nothing else, and the symbols of the
-# single-precision one start with cff_. Two files are made of that list: a linker script for each library, and a
-# header for everything compiled in single precision that gives the listed functions their other symbol.
+# single-precision one start with cff_ (the header itself sees to that). A linker script for each library is made of
+# that list.
 set(public_header ${CMAKE_SOURCE_DIR}/include/cattaneo.h)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${public_header})
 
@@ -14,18 +14,14 @@ if(NOT names)
   message(FATAL_ERROR "no CF_PUBLIC_LIST in ${public_header}")
 endif()
 
-set(CATTANEO_RENAME ${CMAKE_BINARY_DIR}/generated/rename.h)
-set(rename "/* Made by cmake/exports.cmake. */\n")
 set(script "")
 set(scriptf "")
 foreach(name IN LISTS names)
   string(REGEX REPLACE "F\\((.*)\\)" "\\1" name ${name})
-  string(APPEND rename "#pragma redefine_extname cf_${name} cff_${name}\n")
   string(APPEND script "    cf_${name};\n")
   string(APPEND scriptf "    cff_${name};\n")
 endforeach()
-# file(GENERATE) and file(CONFIGURE) leave a file alone that would not change.
-file(CONFIGURE OUTPUT ${CATTANEO_RENAME} CONTENT "${rename}" @ONLY)
+# file(CONFIGURE) leaves a file alone that would not change.
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/cattaneo.map
   CONTENT "{\n  global:\n${script}  local:\n    *;\n};\n" @ONLY)
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/cattaneof.map
