@@ -185,12 +185,12 @@ static void add_memory(cf_check *c) {
 
 /* --- the page --------------------------------------------------------------------------------------------- */
 
-/* As a run would begin; leaves the step that `dt: auto` takes. *tried: there was the memory to do so. */
-static cf_status try_model(cf_check *c, bool *tried) {
+/* As a run would begin; leaves the step that `dt: auto` takes. */
+static cf_status try_model(cf_check *c) {
   cf_sim *sim;
-  *tried = cf_session_memory(c->scene) < machine_memory() / 2;
+  c->fits = cf_session_memory(c->scene) < machine_memory() / 2;
   c->dt = c->scene->time.dt;
-  if (!*tried) return CF_OK;
+  if (!c->fits) return CF_OK;
   CF_TRY(cf_sim_create(&sim, c->scene, omp_get_num_procs()));
   if (isnan(c->dt)) c->dt = sim->model->natural_dt(sim->state, 0);
   const cf_status status = cf_output_check(sim);
@@ -199,11 +199,10 @@ static cf_status try_model(cf_check *c, bool *tried) {
 }
 
 static cf_status write_page(cf_check *c) {
-  bool tried;
   cf_writing_add(&c->page, "%s: %s\n\n", cf_scene_path(c->scene),
                  c->scene->title[0] != '\0' ? c->scene->title : "without a title");
-  CF_TRY(try_model(c, &tried));
-  if (!tried)
+  CF_TRY(try_model(c));
+  if (!c->fits)
     cf_writing_add(&c->warnings,
                    "  too large to be tried here: a run may still find something wrong at its start\n");
   add_grid(c);

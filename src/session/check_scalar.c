@@ -10,7 +10,9 @@
 #include <string.h>
 
 #include "base/real.h"
+#include "model/plan.h"
 #include "model/scene_params.h"
+#include "solve/multigrid.h"
 #include "stencil/regime.h"
 
 static const double pi = 3.14159265358979323846;
@@ -192,52 +194,41 @@ static void add_step(cf_check *c, const numbers *n) {
   }
 }
 
-/* How many levels the hierarchy can have: the finest axes are halved until a line is left. */
-static int most_levels(const cf_scene *scene) {
-  double width[3] = {1, 1, 1};
-  long n[3] = {1, 1, 1};
-  for (int a = 0; a < scene->dim; ++a) n[a] = scene->domain.cells.value[a];
-  int levels = 1;
-  for (;; ++levels) {
-    double finest = INFINITY;
-    int wide = 0;
-    for (int a = 0; a < scene->dim; ++a) {
-      if (n[a] > 1) finest = CF_MIN(finest, width[a]);
-      if (n[a] > 1) ++wide;
-    }
-    if (wide <= 1) return levels;
-    for (int a = 0; a < scene->dim; ++a) {
-      if (n[a] == 1 || width[a] > 1.5 * finest) continue;
-      n[a] /= 2;
-      width[a] *= 2;
-    }
-  }
+/* Levels of multigrid that the solver uses for a stage, from the solver itself. */
+static cf_status count_levels(const cf_scene *scene, const numbers *n, const double sigma, int *levels) {
+  cf_grid g;
+  cf_helmholtz *A;
+  int cells[3] = {1, 1, 1};
+  const double h = scene->spacing;
+  for (int a = 0; a < scene->dim; ++a) cells[a] = (int)scene->domain.cells.value[a];
+  CF_TRY(cf_grid_init(&g, scene->dim, cells, h, NULL));
+  CF_TRY(cf_helmholtz_create(&A, &g, &n->field->walls.walls, (int)scene->solver.levels));
+  const cf_status status = cf_helmholtz_set(A, &(cf_coefficients){.alpha = 1, .beta = sigma * h * h});
+  const bool varies = n->k.least != n->k.largest || n->capacity.least != n->capacity.largest;
+  *levels = varies ? A->levels : A->depth;
+  cf_helmholtz_destroy(A);
+  return status;
 }
 
-/* Levels of multigrid that a stage uses: down to where diffusion is weak between neighbours. */
-static int levels_of(const cf_scene *scene, const numbers *n, const double sigma) {
-  const int most =
-      scene->solver.levels > 0 ? (int)CF_MIN(scene->solver.levels, most_levels(scene)) : most_levels(scene);
-  if (n->k.least != n->k.largest || n->capacity.least != n->capacity.largest) return most;
-  int levels = 1;
-  for (double off = 2 * scene->dim * sigma; off > 3 && levels < most; off /= 4) ++levels;
-  return levels;
-}
-
-static void add_solver(cf_check *c, const numbers *n) {
-  char text[256];
-  const bool paper = n->d->scheme == CF_SCENE_SCHEME_PAPER;
+static cf_status add_solver(cf_check *c, const numbers *n, const int field) {
+  char text[256], on[128] = "";
+  int levels;
+  cf_plan plan;
+  cf_plan_make(c->scene, field, n->D, cf_plan_step(c->scene, c->dt), &plan);
+  const bool paper = plan.scheme == CF_DIFFUSE_PAPER, implicit = paper || plan.scheme == CF_DIFFUSE_SDIRK2;
   const double delta = (paper ? 1 : 1 - sqrt(0.5)) * c->dt, h = c->scene->spacing;
   const double sigma = cf_regime_sigma(cf_regime_stage(delta, n->d->tau, n->d->f_t), n->D, h);
-  const int levels = levels_of(c->scene, n, sigma);
-  snprintf(
-      text, sizeof text, "%s; sigma = %.3g, %d level%s of multigrid",
-      paper ? "one stage of backward Euler (eqs 11 to 18)" : "two implicit stages (sdirk2), second order",
-      sigma, levels, levels == 1 ? "" : "s");
+  if (implicit && c->fits) {
+    CF_TRY(count_levels(c->scene, n, sigma, &levels));
+    snprintf(on, sizeof on, "; sigma = %.3g, %d level%s of multigrid", sigma, levels, levels == 1 ? "" : "s");
+  }
+  snprintf(text, sizeof text, "%s%s", plan.why, on);
   add(c, "scheme", text);
+  add(c, "flux", plan.scalar_form ? "kept as its divergence, one number a cell" : "kept on faces");
   if (paper && n->waves && n->c * c->dt > 0.5 * h)
     cf_writing_add(&c->warnings, "  scheme paper smears the fronts of %.40s: `scheme: default` keeps them\n",
                    n->field->name);
+  return CF_OK;
 }
 
 /* --- everything ------------------------------------------------------------------------------------------- */
@@ -251,7 +242,7 @@ cf_status cf_check_scalar(cf_check *c, const int field) {
   add_stream(c, &n);
   add_words(c, &n);
   add_step(c, &n);
-  if (n.D > 0) add_solver(c, &n);
+  if (n.D > 0) CF_TRY(add_solver(c, &n, field));
   if (n.waves && n.d->f_t < 0.1)
     cf_writing_add(&c->page, "  %-13s %s\n", "note",
                    "values may fall below 0 where fronts meet, as those of the exact solution do");

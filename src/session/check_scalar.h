@@ -14,6 +14,7 @@ typedef struct cf_check {
   const cf_scene *scene;
   double dt;    /* s, of a step that is not shortened */
   double speed; /* the largest |u| at time 0, m/s */
+  bool fits;    /* the machine has the memory for a run */
   cf_writing page, warnings;
 } cf_check;
 
