@@ -19,13 +19,13 @@ static const double K[] = {0.03, 0.8, 0}, CAPACITY[] = {1.5, 0.5, 0}, WALL[] = {
 
 static cf_status rate(void *context, const double t, const cf_cell W) {
   const blob *b = context;
-  FOR_CELLS (b, i, j, k) W.at[cf_box_at(&b->g.box, i, j, k)] = (cf_real)(i < 4 && j > 2 ? cos(9 * t) : 0);
+  FOR_CELLS(b, i, j, k) W.at[cf_box_at(&b->g.box, i, j, k)] = (cf_real)(i < 4 && j > 2 ? cos(9 * t) : 0);
   return CF_OK;
 }
 
 static cf_status hold(void *context, const double t, const cf_cell fraction, const cf_cell value) {
   const blob *b = context;
-  FOR_CELLS (b, i, j, k) {
+  FOR_CELLS(b, i, j, k) {
     const ptrdiff_t p = cf_box_at(&b->g.box, i, j, k);
     fraction.at[p] = (cf_real)(i >= 6 && i < 8 && j < 3 ? 0.25 + 0.75 * (i == 6) : 0);
     value.at[p] = (cf_real)(0.5 + t);
@@ -57,7 +57,7 @@ static void make(blob *b, const variant *v, const bool scalar) {
   if (v->sources) b->source = (cf_source){.rate = rate, .hold = hold, .context = b};
   blob_open(b, v->dim, (int[]){12, 10, 6}, 0.1, NULL);
   uint64_t seed = 5;
-  FOR_CELLS (b, i, j, k) *blob_at(b, i, j, k) = (cf_real)test_random(&seed);
+  FOR_CELLS(b, i, j, k) * blob_at(b, i, j, k) = (cf_real)test_random(&seed);
   blob_start(b);
 }
 
@@ -70,7 +70,8 @@ static double difference(const variant *v) {
   blob_run(&on_faces, 0.8, 8);
   blob_run(&scalar, 0.8, 8);
   const blob *b = &on_faces;
-  FOR_CELLS (b, i, j, k) most = fmax(most, fabs((double)*blob_at(&on_faces, i, j, k) - (double)*blob_at(&scalar, i, j, k)));
+  FOR_CELLS(b, i, j, k)
+  most = fmax(most, fabs((double)*blob_at(&on_faces, i, j, k) - (double)*blob_at(&scalar, i, j, k)));
   CLOSE(blob_error(&scalar), 0, 1e-13);
   if (v->scheme != CF_DIFFUSE_PAPER) CLOSE(blob_error(&on_faces), 0, 1e-13);
   blob_close(&on_faces);
