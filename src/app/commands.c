@@ -48,6 +48,29 @@ const cf_command cf_commands[] = {
      "given.\n"
      "  " CF_PROGRAM " examples cone",
      cf_examples_command},
+    {"sweep", "SCENE.yaml...", 1, 64,
+     BIT(OUTPUT) | BIT(GRID) | BIT(SET) | BIT(JOBS) | BIT(THREADS) | BIT(UNTIL) | BIT(PRECISION) |
+         BIT(PROGRESS) | BIT(COLUMNS) | BIT(FIELD) | BIT(FORCE) | BIT(HELP),
+     "run all combinations of some values; make a table and a contact sheet",
+     "Every combination of the values after --grid is a run in a folder of its own below DIR, named after "
+     "them; "
+     "with several scenes, all of that for each scene. table.csv has a line a run: the values, the exit "
+     "code, and "
+     "the last line of its metrics.csv. sheet.png shows the last frames in one scale, in rows of as many as "
+     "the "
+     "last grid has values (or --columns).\n"
+     "The runs are processes of their own, --jobs at a time, and share the threads. Ctrl-C stops them with "
+     "checkpoints. The same command again goes on: runs that are finished are kept, others resumed.\n"
+     "  " CF_PROGRAM
+     " sweep cone.yaml --grid diffusion.f_t=0,0.25,0.5,1 --grid diffusion.tau=1,4 -o out/cones",
+     cf_sweep_command},
+    {"sheet", "DIR...", 1, 1000, BIT(OUTPUT) | BIT(COLUMNS) | BIT(FIELD) | BIT(HELP),
+     "put the last frames of several runs on one sheet",
+     "One scale and one colour bar for all, each with the title of its scene. -o names the picture to write. "
+     "The "
+     "colours end where output.preview.range says if all the scenes say the same, otherwise at the values.\n"
+     "  " CF_PROGRAM " sheet out/cones/* -o out/cones.png --columns 4",
+     cf_sheet_command},
     {"info", "FILE|DIR", 1, 1, BIT(HELP), "what a frame, a checkpoint or the folder of a run contains",
      "Scene, version and times; of every field the least and largest value, the sum and a checksum. Equal "
      "checksums, equal bits.\n"

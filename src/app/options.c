@@ -22,7 +22,7 @@ const cf_option cf_option_table[CF_OPTIONS] = {
 #undef CF_OPTION_ROW
 };
 
-enum { THREADS_MAX = 1024, LONG_ONLY = 256 };
+enum { THREADS_MAX = 1024, COLUMNS_MAX = 64, LONG_ONLY = 256 };
 
 /* --- values ----------------------------------------------------------------------------------------------- */
 
@@ -79,6 +79,14 @@ static cf_status read_set(cf_arguments *a, const char *text) {
   return CF_OK;
 }
 
+static cf_status read_grid(cf_arguments *a, const char *text) {
+  const char *equals = strchr(text, '=');
+  if (equals == NULL || equals == text || equals[1] == '\0')
+    return cf_fail(CF_BAD_USAGE, "--grid %s: must be KEY=A,B,C, like diffusion.f_t=0,0.5,1", text);
+  a->grid[a->grids++] = text;
+  return CF_OK;
+}
+
 /* Keeps the value of one option. */
 static cf_status keep(cf_arguments *a, const int option, const char *value) {
   const cf_option *o = &cf_option_table[option];
@@ -91,6 +99,19 @@ static cf_status keep(cf_arguments *a, const int option, const char *value) {
       break;
     case CF_OPTION_SET:
       return read_set(a, value);
+    case CF_OPTION_GRID:
+      return read_grid(a, value);
+    case CF_OPTION_JOBS:
+      CF_TRY(read_whole(o->name, value, THREADS_MAX, &whole));
+      a->jobs = (int)whole;
+      break;
+    case CF_OPTION_COLUMNS:
+      CF_TRY(read_whole(o->name, value, COLUMNS_MAX, &whole));
+      a->columns = (int)whole;
+      break;
+    case CF_OPTION_FIELD:
+      a->field = value;
+      break;
     case CF_OPTION_THREADS:
       CF_TRY(read_whole(o->name, value, THREADS_MAX, &whole));
       a->threads = (int)whole;
@@ -211,7 +232,8 @@ static cf_status read_all(cf_arguments *a, const int argc, char **argv, const un
 
 cf_status cf_arguments_read(cf_arguments *a, const int argc, char **argv, const unsigned allowed) {
   *a = (cf_arguments){.operands = 0};
-  CF_TRY(CF_NEW(&a->set, argc));
+  CF_TRY(CF_NEW(&a->set, 2 * argc));
+  a->grid = a->set + argc;
   const cf_status status = read_all(a, argc, argv, allowed);
   if (status != CF_OK) cf_arguments_clear(a);
   return status;
@@ -219,5 +241,5 @@ cf_status cf_arguments_read(cf_arguments *a, const int argc, char **argv, const 
 
 void cf_arguments_clear(cf_arguments *a) {
   cf_free(a->set);
-  a->set = NULL;
+  a->set = a->grid = NULL;
 }

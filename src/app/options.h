@@ -18,6 +18,10 @@
 #define CF_OPTION_LIST(O)                                                                                     \
   O(OUTPUT, "output", 'o', "DIR", "the folder to write; left out: out/<name of the scene file>")              \
   O(SET, "set", 0, "KEY=VALUE", "goes before what the scene says, for example diffusion.tau=2; may be repeated") \
+  O(GRID, "grid", 0, "KEY=A,B,C", "a key and the values it takes in turn; may be repeated, for all combinations")  \
+  O(JOBS, "jobs", 'j', "N", "runs at the same time; left out: one a processor; they share the threads")       \
+  O(COLUMNS, "columns", 0, "N", "pictures in a row of the sheet")                                             \
+  O(FIELD, "field", 0, "NAME", "the field in the pictures; left out: that of the previews")                   \
   O(THREADS, "threads", 0, "N", "threads to use; left out: one a processor; the results are the same bits")   \
   O(UNTIL, "until", 0, "T", "stop at this simulated time, in s")                                              \
   O(STEPS, "steps", 0, "N", "stop after so many steps")                                                       \
@@ -59,6 +63,10 @@ typedef struct cf_arguments {
   const char *output;
   int sets;
   const char **set;
+  int grids;
+  const char **grid;
+  int jobs, columns; /* 0: not given */
+  const char *field;
   int threads;   /* 0: not given */
   double until;  /* s; 0: not given */
   int64_t steps; /* 0: not given */

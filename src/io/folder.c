@@ -189,7 +189,7 @@ cf_status cf_folder_cut_frames(const char *path, const int64_t last) {
 /* --- the folder --------------------------------------------------------------------------------------------
  */
 
-static cf_status make_folder(const char *path) {
+cf_status cf_folder_make(const char *path) {
   cf_path part;
   CF_TRY(cf_path_make(&part, "%s", path));
   for (char *at = part.text + 1;; ++at) {
@@ -270,7 +270,7 @@ static cf_status name_folder(cf_folder *f, const char *path) {
 
 cf_status cf_folder_create(cf_folder *f, const char *path, const bool force) {
   CF_TRY(name_folder(f, path));
-  CF_TRY(make_folder(f->path.text));
+  CF_TRY(cf_folder_make(f->path.text));
   cf_status s = take_lock(f);
   if (s == CF_OK) s = refuse_or_clear(f, force);
   return settle(f, s);

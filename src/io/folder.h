@@ -58,6 +58,9 @@ typedef struct cf_folder {
   int log;
 } cf_folder;
 
+/* Makes a folder, and those above it; one that is there already will do. CF_CANNOT_WRITE. */
+cf_status cf_folder_make(const char *path);
+
 /* Makes the folder (and those above it) and locks it. A folder that holds a run is refused, CF_BAD_USAGE,
  * with a sentence that says what was found; with `force` the files of that run are removed, and no others.
  * CF_CANNOT_WRITE: the folder cannot be made, or another process is running in it. */
