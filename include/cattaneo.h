@@ -186,10 +186,14 @@ typedef struct cf_view {
   const char *unit;    /* "" where the scene gives none */
 } cf_view;
 
-/* The field `name`: "phi" or another scalar of the scene (component 0), its flux "q" or "q_NAME", "velocity"
- * (component: the axis). The view stays valid as long as the simulation, and shows the state as it is now.
- * Scalars and fluxes may be written between steps; the velocity is set from the scene at every step that needs
- * it. The ledger in the metrics counts what you write as an error, for it is not the scene's.
+/* The field `name`: "phi" or another scalar of the scene (component 0); its flux "q" or "q_NAME" where the scene
+ * names it, in `fields` or output.fields; "velocity" (component: the axis). The view stays valid as long as the
+ * simulation, and shows the state as it is now.
+ *
+ * Scalars and fluxes may be written between steps; on a periodic axis the last faces are the first ones again, so
+ * write both. The velocity is set from the scene at every step that needs it. The ledger in the metrics counts
+ * what you write as an error, for it is not the scene's.
+ *
  * CF_BAD_ARGUMENT: there is no such field or component; the sentence lists those there are. */
 cf_status cf_sim_field(cf_sim *sim, const char *name, int component, cf_view *view);
 
@@ -389,10 +393,12 @@ typedef struct cf_diffuse_params {
   double f_t;     /* F_T, 0 ... 1 */
   cf_diffuse_scheme scheme;
   cf_solve_options solver;
-  int levels;        /* of multigrid; 0: as needed */
-  bool front_filter; /* takes the ripples off steep fronts after every (sub)step; CF_DIFFUSE_WAVE needs none */
-  bool positive;     /* CF_DIFFUSE_LEAPFROG: fluxes are limited so that phi >= 0 stays so; the law itself goes
-                        below 0 behind fronts in 2D and 3D */
+  int levels; /* of multigrid; 0: as needed */
+  /* Takes the ripples off steep fronts after every (sub)step; CF_DIFFUSE_WAVE needs none. */
+  bool front_filter;
+  /* CF_DIFFUSE_LEAPFROG: fluxes are limited so that phi >= 0 stays so; the law itself goes below 0 behind fronts
+   * in 2D and 3D. */
+  bool positive;
 } cf_diffuse_params;
 
 /* Where the scalar's sum came from and went, in absolute amounts (integral of C phi). With `first` what was
