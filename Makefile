@@ -31,7 +31,7 @@ setup-tests:
 
 # Ninja where there is a choice; a folder that was configured before keeps what it has.
 configure:
-	@test -e $(BUILD)/build.ninja || test -e $(BUILD)/Makefile || cmake -S . -B $(BUILD) -G Ninja
+	@test -e $(BUILD)/build.ninja || test -e $(BUILD)/Makefile || cmake -S . -B $(BUILD) -G Ninja -DCATTANEO_WERROR=ON
 
 programs: setup
 	@$(MAKE) --no-print-directory configure
