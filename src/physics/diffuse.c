@@ -123,6 +123,7 @@ static cf_status make_fields(cf_diffuse *d) {
     CF_TRY(cf_cell_create(&d->fraction, box));
     CF_TRY(cf_cell_create(&d->value, box));
     CF_TRY(cf_cell_create(&d->alpha, box));
+    CF_TRY(cf_cell_create(&d->change, box));
   }
   CF_TRY(make_k(d));
   CF_TRY(make_capacity(d));
@@ -173,8 +174,9 @@ cf_status cf_diffuse_create(cf_diffuse **d, const cf_grid *g, const cf_walls *wa
 void cf_diffuse_destroy(cf_diffuse *d) {
   if (d == NULL) return;
   const cf_box *box = &d->grid->box;
-  cf_cell *cells[] = {&d->capacity, &d->alpha, &d->x,        &d->b,        &d->W,
-                      &d->fraction, &d->value, &d->filtered, &d->kept.phi, &d->kept.phi_rate};
+  cf_cell *cells[] = {&d->capacity, &d->alpha,         &d->x,     &d->b,
+                      &d->W,        &d->fraction,      &d->value, &d->filtered,
+                      &d->kept.phi, &d->kept.phi_rate, &d->change};
   cf_face *faces[] = {&d->k, &d->beta, &d->B, &d->kept.q};
   for (size_t i = 0; i < sizeof cells / sizeof *cells; ++i) cf_cell_destroy(cells[i], box);
   for (size_t i = 0; i < sizeof faces / sizeof *faces; ++i) cf_face_destroy(faces[i], box);

@@ -63,6 +63,7 @@ struct cf_diffuse {
   cf_cell capacity, alpha; /* C where it varies; C plus what holds, where something holds */
   cf_cell x, b, W;         /* phi~, right side, source */
   cf_cell fraction, value; /* of held cells */
+  cf_cell change;          /* phi~ less its guess, where cells are held */
   cf_face B;               /* source of the flux */
   cf_cell filtered;        /* scratch of the front filter */
   cf_diffuse_kept kept;

@@ -16,8 +16,10 @@
 
 #include "physics/diffuse_part.h"
 
-/* A held cell's equation is phi = value with this weight beside the rest. */
-#define HOLD_MAX 1e9
+/* A held cell's equation is phi = value with this weight beside the rest; from this fraction on the value is
+ * known. */
+#define HOLD_MAX 1e6
+#define HOLD_ALL (1 - 1 / HOLD_MAX)
 
 /* m: what is left of a flux after `delta`. 0 for tau = 0, 1 for tau = infinity. */
 static double flux_memory(const double delta, const double tau) {
@@ -217,6 +219,17 @@ static void right_side_where_held(const cf_diffuse *d) {
     }
 }
 
+static double norm(const cf_diffuse *d, const cf_cell f) {
+  const cf_box *box = &d->grid->box;
+  CF_PARALLEL_ROWS (box, d->grid->threads, r) {
+    double lane[CF_SUM_LANES] = {0};
+    const cf_real *row = f.at + cf_box_row(box, r);
+    for (int i = 0; i < box->n[0]; ++i) lane[i % CF_SUM_LANES] += (double)row[i] * (double)row[i];
+    d->rows[r] = cf_sum_lanes(lane);
+  }
+  return sqrt(cf_sum_ordered(d->rows, cf_box_rows(box)));
+}
+
 /* Of m q_w on a radiating wall only the share theta leaves the cell; the rest goes into phi_w. */
 static void radiation_right_side(const cf_diffuse *d, const cf_wall_side *w, const ptrdiff_t p,
                                  const ptrdiff_t f, const ptrdiff_t place, void *context) {
@@ -312,6 +325,37 @@ static stage stage_begin(const cf_diffuse *d, const stage_plan *plan, const cf_d
   return s;
 }
 
+/* Where cells are held, for the change from a guess that has the held values: against their weights the other
+ * cells' equations would not count in the norms of the solver. The residual is meant, and told, in terms of the right
+ * side without those weights. */
+static cf_status solve_held(cf_diffuse *d, const double plain, cf_solve_report *one) {
+  const cf_box *box = &d->grid->box;
+  cf_solve_options o = d->p.solver;
+  CF_PARALLEL_ROWS (box, d->grid->threads, r)
+    for (int i = 0; i < box->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(box, r) + i;
+      if ((double)d->fraction.at[p] >= HOLD_ALL) d->x.at[p] = d->value.at[p];
+    }
+  cf_helmholtz_apply(d->A, d->x, d->change);
+  CF_PARALLEL_ROWS (box, d->grid->threads, r)
+    for (int i = 0; i < box->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(box, r) + i;
+      const bool known = (double)d->fraction.at[p] >= HOLD_ALL;
+      d->b.at[p] = known ? 0 : d->b.at[p] - d->change.at[p];
+      d->change.at[p] = 0;
+    }
+  const double size = norm(d, d->b), scale = size > 0 && plain > 0 ? plain / size : 1;
+  o.tolerance = CF_MIN(0.5, CF_MAX(o.tolerance * scale, 64 * CF_REAL_EPSILON));
+  CF_TRY(cf_helmholtz_solve(d->A, d->b, &o, d->change, one));
+  one->residual /= scale;
+  CF_PARALLEL_ROWS (box, d->grid->threads, r)
+    for (int i = 0; i < box->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(box, r) + i;
+      d->x.at[p] += d->change.at[p];
+    }
+  return CF_OK;
+}
+
 static cf_status solve_stage(cf_diffuse *d, stage *s, const cf_diffused *y, cf_solve_report *report) {
   const cf_box *box = &d->grid->box;
   CF_PARALLEL_ROWS (box, d->grid->threads, r)
@@ -319,10 +363,15 @@ static cf_status solve_stage(cf_diffuse *d, stage *s, const cf_diffused *y, cf_s
   CF_TRY(set_operator(d, &s->law));
   cf_helmholtz_add_walls(d->A, &d->walls, d->b);
   if (d->has_radiation) cf_diffuse_visit_radiating(d, radiation_right_side, s);
-  if (d->source.hold != NULL) right_side_where_held(d);
   cf_diffuse_copy(d, y->phi.at, d->x.at);
   cf_solve_report one;
-  CF_TRY(cf_helmholtz_solve(d->A, d->b, &d->p.solver, d->x, &one));
+  if (d->source.hold != NULL) {
+    const double plain = norm(d, d->b);
+    right_side_where_held(d);
+    CF_TRY(solve_held(d, plain, &one));
+  } else {
+    CF_TRY(cf_helmholtz_solve(d->A, d->b, &d->p.solver, d->x, &one));
+  }
   report->iterations += one.iterations;
   report->levels = one.levels;
   report->residual = CF_MAX(report->residual, one.residual);
@@ -361,7 +410,8 @@ static cf_status run_stage(cf_diffuse *d, const stage_plan *plan, const cf_diffu
   CF_TRY(solve_stage(d, &s, y, report));
   account_walls(d, &s, y->s, ledger);
   if (d->source.hold != NULL) cf_diffuse_copy(d, y->phi.at, d->b.at); /* hold_cells needs the old phi */
-  update_cells(d, &s, plan->paper);
+  /* The paper knows no held cells; phi = phi~ would hide what they bring from the ledger. */
+  update_cells(d, &s, plan->paper && d->source.hold == NULL);
   if (s.W != NULL) cf_ledger_add(ledger, plan->w * plan->delta * cf_diffuse_integral(d, d->W));
   if (d->source.hold != NULL) cf_ledger_add(ledger, hold_cells(d, &s));
   if (plan->fourier) return CF_OK;

@@ -55,9 +55,9 @@ static inline void blob_close(blob *b) {
   cf_face_destroy(&b->q, &b->g.box);
 }
 
-#define FOR_CELLS(b, i, j, k)                    \
-  for (int k = 0; k < (b)->g.box.n[2]; ++k)      \
-    for (int j = 0; j < (b)->g.box.n[1]; ++j)    \
+#define FOR_CELLS(b, i, j, k)                 \
+  for (int k = 0; k < (b)->g.box.n[2]; ++k)   \
+    for (int j = 0; j < (b)->g.box.n[1]; ++j) \
       for (int i = 0; i < (b)->g.box.n[0]; ++i)
 
 static inline cf_real *blob_at(const blob *b, const int i, const int j, const int k) {
@@ -79,10 +79,13 @@ static inline void blob_run(blob *b, const double end, const int steps) {
   for (int i = 0; i < steps; ++i) blob_step(b, dt);
 }
 
-static inline double blob_error(const blob *b) { return cf_ledger_error(&b->ledger, cf_diffuse_content(b->d, b->phi)); }
+static inline double blob_error(const blob *b) {
+  return cf_ledger_error(&b->ledger, cf_diffuse_content(b->d, b->phi));
+}
 
 /* The factor by which mode K has changed at time t. */
-static inline double mode_factor(const double K, const double k, const double tau, const double F, const double t) {
+static inline double mode_factor(const double K, const double k, const double tau, const double F,
+                                 const double t) {
   const double a = k * K * K, b = 1 + tau * F * a;
   const double complex root = csqrt(b * b - 4 * tau * a);
   const double complex fast = -(b + root) / (2 * tau), slow = -2 * a / (b + root);
@@ -93,7 +96,8 @@ static inline double mode_factor(const double K, const double k, const double ta
 }
 
 /* out = exact solution at time t in a periodic axis of length n h that starts from in. */
-static inline void exact_axis(const int n, const double h, const double *in, const double t, const blob *b, double *out) {
+static inline void exact_axis(const int n, const double h, const double *in, const double t, const blob *b,
+                              double *out) {
   for (int i = 0; i < n; ++i) out[i] = 0;
   for (int m = 0; m <= n / 2; ++m) {
     double re = 0, im = 0;
@@ -104,7 +108,8 @@ static inline void exact_axis(const int n, const double h, const double *in, con
     const double share = (m == 0 || 2 * m == n ? 1.0 : 2.0) / n *
                          mode_factor(2 * PI * m / (n * h), b->p.k.value, b->p.tau, b->p.f_t, t);
     for (int i = 0; i < n; ++i)
-      out[i] += share * (re * cos(2 * PI * (double)((long)m * i % n) / n) + im * sin(2 * PI * (double)((long)m * i % n) / n));
+      out[i] += share * (re * cos(2 * PI * (double)((long)m * i % n) / n) +
+                         im * sin(2 * PI * (double)((long)m * i % n) / n));
   }
 }
 
