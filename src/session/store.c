@@ -21,7 +21,6 @@ cf_status cf_sim_save(const cf_sim *sim, const char *path) {
 static cf_status check_scene(const cf_sim *sim, const char *path) {
   cf_checkpoint_facts facts;
   char *saved, *ours;
-  CF_TRY(cf_checkpoint_check(path));
   CF_TRY(cf_checkpoint_describe(path, &facts, &saved));
   cf_status s = cf_scene_write(sim->scene, &ours);
   if (s != CF_OK) {

@@ -103,7 +103,7 @@ static void a_loaded_simulation_goes_on_with_the_same_bits(void **state) {
 /* The step is chosen by a velocity that changes in time. */
 static void so_it_does_where_the_step_is_automatic(void **state) {
   (void)state;
-  goes_on("time.dt=auto");
+  goes_on("time={end: 0.1, dt: auto, cfl: 0.01}");
 }
 
 static void checkpoints_of_a_run_can_be_loaded(void **state) {
