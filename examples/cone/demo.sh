@@ -26,7 +26,7 @@ for f_t in 0.25 0.5 0.75 1; do
   run "hc-2.00-ft-$f_t" scene.yaml --set "diffusion.f_t=$f_t" --set "title=Share of Fourier F_T = $f_t"
 done
 
-"$program" sheet "$out"/hc-*/ -o "$out/sheet.png" --columns 4 > /dev/null
+"$program" sheet "$out"/hc-?.?? "$out"/hc-2.00-ft-* -o "$out/sheet.png" --columns 4 > /dev/null
 
 echo
 echo "All last frames at once: $out/sheet.png"

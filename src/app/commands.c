@@ -67,8 +67,8 @@ const cf_command cf_commands[] = {
     {"sheet", "DIR...", 1, 1000, BIT(OUTPUT) | BIT(COLUMNS) | BIT(FIELD) | BIT(HELP),
      "put the last frames of several runs on one sheet",
      "One scale and one colour bar for all, each with the title of its scene. -o names the picture to write. "
-     "The "
-     "colours end where output.preview.range says if all the scenes say the same, otherwise at the values.\n"
+     "The colours end where output.preview.range of all the scenes says; without one they follow from the "
+     "values.\n"
      "  " CF_PROGRAM " sheet out/cones/* -o out/cones.png --columns 4",
      cf_sheet_command},
     {"info", "FILE|DIR", 1, 1, BIT(HELP), "what a frame, a checkpoint or the folder of a run contains",

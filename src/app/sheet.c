@@ -15,7 +15,7 @@
 #include "model/scene.h"
 #include "render/preview.h"
 
-enum { WIDTH = 1600, CAPTION = 160 };
+enum { WIDTH = 1400, CAPTION = 160 };
 
 /* One run of the sheet. */
 typedef struct exhibit {
@@ -83,23 +83,25 @@ static cf_status read_run(const cf_sheet *s, const int i, exhibit *e, bool *foun
 
 /* --- drawing ------------------------------------------------------------------------------------------------ */
 
-/* Range and map where all scenes give the same; otherwise they follow from the values. */
+/* The map that all scenes name, and the range that all of theirs share; otherwise they follow from the values. */
 static cf_preview common_preview(const exhibit *e, const int count, const char *field) {
   const cf_scene_preview *first = &e[0].scene->output.preview;
-  bool range = first->range.count == 2, map = first->map[0] != '\0', time = true;
+  bool range = true, map = first->map[0] != '\0', time = true;
+  double low = -(double)INFINITY, high = (double)INFINITY;
   const char *unit = "";
   for (int i = 0; i < e[0].frame.count; ++i)
     if (strcmp(e[0].frame.field[i].name, field) == 0) unit = e[0].frame.field[i].unit;
-  for (int i = 1; i < count; ++i) {
+  for (int i = 0; i < count; ++i) {
     const cf_scene_preview *p = &e[i].scene->output.preview;
-    range = range && p->range.count == 2 && p->range.value[0] == first->range.value[0] &&
-            p->range.value[1] == first->range.value[1];
+    range = range && p->range.count == 2;
+    low = range ? CF_MAX(low, p->range.value[0]) : low;
+    high = range ? CF_MIN(high, p->range.value[1]) : high;
     map = map && strcmp(p->map, first->map) == 0;
     time = time && e[i].frame.time == e[0].frame.time;
   }
   cf_preview p = cf_preview_default(field, unit);
   if (map) p.map = first->map;
-  if (range) p.low = first->range.value[0], p.high = first->range.value[1];
+  if (range && low < high) p.low = low, p.high = high;
   p.time = time ? e[0].frame.time : (double)NAN;
   p.size = WIDTH;
   return p;
