@@ -214,7 +214,7 @@ static cf_status step(cf_diffuse *d, const double t, const double dt, const cf_d
     default:
       CF_TRY(cf_diffuse_sdirk2(d, t, dt, y, ledger, report));
   }
-  cf_diffuse_filter_phi(d, 1, dt, y->phi);
+  cf_diffuse_filter_phi(d, 1, dt, y->phi, ledger);
   cf_diffuse_filter_flux(d, 1, dt, y->q);
   return CF_OK;
 }

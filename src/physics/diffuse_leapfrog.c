@@ -225,7 +225,7 @@ static cf_status drift(cf_diffuse *d, const double t, const double dt, const cf_
     drift_row_by_form(box->dim, y->s.at != NULL, box->n[0], &l, cf_box_row(box, r));
   account_walls(d, y, dt, ledger);
   if (d->source.rate != NULL) cf_ledger_add(ledger, dt * cf_diffuse_integral(d, d->W));
-  if (d->source.hold != NULL) cf_ledger_add(ledger, cf_diffuse_hold(d, y->phi));
+  if (d->source.hold != NULL) cf_ledger_add(ledger, cf_diffuse_hold(d, 0, y->phi));
   return CF_OK;
 }
 
@@ -265,7 +265,7 @@ cf_status cf_diffuse_leapfrog(cf_diffuse *d, const double t, const double dt, co
     const double now = t + i * sub, next = i + 1 < n ? t + (i + 1) * sub : t + dt;
     CF_TRY(drift(d, now, sub, y, ledger));
     if (mixed && !fourier) fourier_step(d, sub, y, ledger);
-    cf_diffuse_filter_phi(d, 0.5, sub, y->phi);
+    cf_diffuse_filter_phi(d, 0.5, sub, y->phi, ledger);
     CF_TRY(kick(d, next, i + 1 < n ? sub : sub / 2, y));
     cf_diffuse_filter_flux(d, 0.5, sub, y->q);
   }

@@ -108,11 +108,12 @@ typedef void cf_wall_visit(const cf_diffuse *d, const cf_wall_side *w, ptrdiff_t
                            ptrdiff_t place, void *context);
 void cf_diffuse_visit_radiating(const cf_diffuse *d, cf_wall_visit *visit, void *context);
 
-/* phi moves to the held value by its fraction. Returns the content gained. */
-double cf_diffuse_hold(const cf_diffuse *d, cf_cell phi);
+/* phi moves to the held value by its fraction, in cells of which at least `from` is held. Returns the content
+ * gained. */
+double cf_diffuse_hold(const cf_diffuse *d, double from, cf_cell phi);
 
-/* The front filter, if the parameters ask for it, for waves that moved over dt. */
-void cf_diffuse_filter_phi(const cf_diffuse *d, double weight, double dt, cf_cell phi);
+/* The front filter, if the parameters ask for it, for waves that moved over dt; cells that are held stay so. */
+void cf_diffuse_filter_phi(const cf_diffuse *d, double weight, double dt, cf_cell phi, cf_ledger *ledger);
 void cf_diffuse_filter_flux(const cf_diffuse *d, double weight, double dt, cf_face q);
 
 /* --- sums ------------------------------------------------------------------------------------------------- */

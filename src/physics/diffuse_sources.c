@@ -150,14 +150,14 @@ void cf_diffuse_copy(const cf_diffuse *d, const cf_real *from, cf_real *to) {
     copy_row(box->n[0], from + cf_box_row(box, r), to + cf_box_row(box, r));
 }
 
-double cf_diffuse_hold(const cf_diffuse *d, const cf_cell phi) {
+double cf_diffuse_hold(const cf_diffuse *d, const double from, const cf_cell phi) {
   const cf_box *box = &d->grid->box;
   CF_PARALLEL_ROWS (box, d->grid->threads, r) {
     const ptrdiff_t start = cf_box_row(box, r);
     double sum = 0;
     for (int i = 0; i < box->n[0]; ++i) {
       const ptrdiff_t p = start + i;
-      if (d->fraction.at[p] == 0) continue;
+      if (d->fraction.at[p] == 0 || (double)d->fraction.at[p] < from) continue;
       const double before = (double)phi.at[p];
       phi.at[p] = (cf_real)(before + (double)d->fraction.at[p] * ((double)d->value.at[p] - before));
       sum += (d->c_varies ? (double)d->capacity.at[p] : 1) * ((double)phi.at[p] - before);
@@ -173,8 +173,11 @@ static double strength(const cf_diffuse *d, const double weight, const double dt
   return cf_front_strength(d->axes, d->speed_max * dt / d->grid->h, weight);
 }
 
-void cf_diffuse_filter_phi(const cf_diffuse *d, const double weight, const double dt, const cf_cell phi) {
-  if (d->p.front_filter) cf_front_cell(d->grid, &d->walls.walls, strength(d, weight, dt), phi, d->filtered);
+void cf_diffuse_filter_phi(const cf_diffuse *d, const double weight, const double dt, const cf_cell phi,
+                           cf_ledger *ledger) {
+  if (!d->p.front_filter) return;
+  cf_front_cell(d->grid, &d->walls.walls, strength(d, weight, dt), phi, d->filtered);
+  if (d->source.hold != NULL) cf_ledger_add(ledger, cf_diffuse_hold(d, 1, phi));
 }
 
 void cf_diffuse_filter_flux(const cf_diffuse *d, const double weight, const double dt, const cf_face q) {

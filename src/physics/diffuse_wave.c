@@ -15,7 +15,6 @@
  */
 #include <math.h>
 #include <string.h>
-#include <string.h>
 
 #include "grid/halo.h"
 #include "physics/diffuse_part.h"
@@ -229,9 +228,8 @@ static void decay(const cf_diffuse *d, const double dt, const cf_face q) {
 static void keep(const cf_diffuse *d, const cf_diffused *y) {
   const cf_box *box = &d->grid->box;
   cf_diffuse_copy(d, y->phi.at, d->kept.phi.at);
-  for (int a = 0; a < box->dim; ++a)
-  FOR_ROWS (d, a, p)
-    memcpy(d->kept.q.at[a] + p, y->q.at[a] + p, (size_t)cf_box_extent(box, 0, a) * sizeof(cf_real));
+  for (int a = 0; a < box->dim; ++a) FOR_ROWS(d, a, p)
+  memcpy(d->kept.q.at[a] + p, y->q.at[a] + p, (size_t)cf_box_extent(box, 0, a) * sizeof(cf_real));
 }
 
 static cf_status substep(cf_diffuse *d, const double t, const double dt, const cf_diffused *y,
@@ -244,7 +242,7 @@ static cf_status substep(cf_diffuse *d, const double t, const double dt, const c
   decay(d, dt / 2, y->q);
   if (d->source.hold == NULL) return CF_OK;
   CF_TRY(cf_diffuse_sample(d, &(cf_source_times){t + dt, t + dt, t + dt, t + dt}));
-  cf_ledger_add(ledger, cf_diffuse_hold(d, y->phi));
+  cf_ledger_add(ledger, cf_diffuse_hold(d, 0, y->phi));
   return CF_OK;
 }
 
