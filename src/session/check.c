@@ -23,9 +23,7 @@
 #define CELLS_A_STEP 2.0
 #define MANY_FRAMES  10000.0
 
-static void add(cf_check *c, const char *name, const char *text) {
-  cf_writing_add(&c->page, "%-15s %s\n", name, text);
-}
+static void add(cf_check *c, const char *name, const char *text) { cf_check_add(c, 0, name, text); }
 
 /* Sizes for people: "12 MB", "3.4 GB". */
 static void bytes_text(const double bytes, char *text, const size_t size) {

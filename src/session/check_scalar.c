@@ -72,9 +72,13 @@ typedef struct numbers {
   double D; /* the largest k/C, m^2/s */
   double c; /* the largest front speed, m/s; INFINITY without memory */
   bool waves;
+  double dt; /* of a step between two frames, s */
+  cf_plan plan;
+  bool implicit; /* the plan is */
 } numbers;
 
-static cf_status find_numbers(const cf_scene *scene, const int field, numbers *n) {
+static cf_status find_numbers(const cf_check *c, const int field, numbers *n) {
+  const cf_scene *scene = c->scene;
   n->field = &scene->fields.item[field];
   n->d = &n->field->diffusion;
   CF_TRY(cf_check_sample(scene, &n->d->k.fn, "diffusion.k", &n->k));
@@ -82,12 +86,30 @@ static cf_status find_numbers(const cf_scene *scene, const int field, numbers *n
   n->D = n->k.largest / n->capacity.least;
   n->c = cf_regime_speed(n->D, n->d->tau, n->d->f_t);
   n->waves = n->c > 0 && isfinite(n->c);
+  n->dt = cf_plan_step(scene, c->dt);
+  cf_plan_make(scene, field, n->D, n->dt, &n->plan);
+  n->implicit = n->plan.scheme == CF_DIFFUSE_PAPER || n->plan.scheme == CF_DIFFUSE_SDIRK2;
   return CF_OK;
 }
 
-static void add(cf_check *c, const char *name, const char *text) {
-  cf_writing_add(&c->page, "  %-13s %s\n", name, text);
+void cf_check_add(cf_check *c, const int indent, const char *name, const char *text) {
+  const int column = 16, width = 96;
+  cf_writing_add(&c->page, "%*s%-*s", indent, "", column - indent, name);
+  for (int at = column; *text != '\0';) {
+    const int length = (int)strcspn(text, " ");
+    if (at > column && at + 1 + length > width) {
+      cf_writing_add(&c->page, "\n%*s", column, "");
+      at = column;
+    }
+    cf_writing_add(&c->page, "%s%.*s", at > column ? " " : "", length, text);
+    at += length + (at > column ? 1 : 0);
+    text += length;
+    text += strspn(text, " ");
+  }
+  cf_writing_add(&c->page, "\n");
 }
+
+static void add(cf_check *c, const char *name, const char *text) { cf_check_add(c, 2, name, text); }
 
 static void extremes_text(const cf_extremes *e, const char *unit, char *text, const size_t size) {
   if (e->least == e->largest)
@@ -174,24 +196,22 @@ static void add_words(cf_check *c, const numbers *n) {
 
 static void add_step(cf_check *c, const numbers *n) {
   char text[256];
-  const double h = c->scene->spacing, tau = n->d->tau;
+  const double h = c->scene->spacing, tau = n->d->tau, cells = n->c * n->dt / h;
   const char *name = n->field->name;
-  if (n->waves) {
-    const double cells = n->c * c->dt / h;
-    snprintf(text, sizeof text, "dt/tau = %.3g; a front crosses %.3g cells a step", c->dt / tau, cells);
-    add(c, "step", text);
-    if (c->dt > STEPS_OF_NOTHING * tau)
-      cf_writing_add(&c->warnings,
-                     "  dt is %.3g tau: memory of %.40s is over within a step, which leaves Fourier's law\n",
-                     c->dt / tau, name);
-    else if (cells > CELLS_A_STEP)
-      cf_writing_add(&c->warnings,
-                     "  fronts of %.40s cross %.3g cells a step and get smeared: time.dt of %.2g s or less\n",
-                     name, cells, CELLS_A_STEP * h / n->c);
-  } else if (n->D > 0) {
-    snprintf(text, sizeof text, "k dt/h^2 = %.3g", n->D * c->dt / (h * h));
-    add(c, "step", text);
-  }
+  if (n->waves)
+    snprintf(text, sizeof text, "dt/tau = %.3g; a front crosses %.3g cells a step", n->dt / tau, cells);
+  else
+    snprintf(text, sizeof text, "k dt/h^2 = %.3g", n->D * n->dt / (h * h));
+  if (n->D > 0) add(c, "step", text);
+  if (!n->waves) return;
+  if (n->dt > STEPS_OF_NOTHING * tau)
+    cf_writing_add(&c->warnings,
+                   "  dt is %.3g tau: memory of %.40s is over within a step, which leaves Fourier's law\n",
+                   n->dt / tau, name);
+  else if (n->implicit && cells > CELLS_A_STEP)
+    cf_writing_add(&c->warnings,
+                   "  fronts of %.40s cross %.3g cells a step and get smeared: time.dt of %.2g s or less\n",
+                   name, cells, CELLS_A_STEP * h / n->c);
 }
 
 /* Levels of multigrid that the solver uses for a stage, from the solver itself. */
@@ -210,22 +230,23 @@ static cf_status count_levels(const cf_scene *scene, const numbers *n, const dou
   return status;
 }
 
-static cf_status add_solver(cf_check *c, const numbers *n, const int field) {
+static cf_status add_scheme(cf_check *c, const numbers *n) {
   char text[256], on[128] = "";
   int levels;
-  cf_plan plan;
-  cf_plan_make(c->scene, field, n->D, cf_plan_step(c->scene, c->dt), &plan);
-  const bool paper = plan.scheme == CF_DIFFUSE_PAPER, implicit = paper || plan.scheme == CF_DIFFUSE_SDIRK2;
-  const double delta = (paper ? 1 : 1 - sqrt(0.5)) * c->dt, h = c->scene->spacing;
+  const bool paper = n->plan.scheme == CF_DIFFUSE_PAPER;
+  const double delta = (paper ? 1 : 1 - sqrt(0.5)) * n->dt, h = c->scene->spacing;
   const double sigma = cf_regime_sigma(cf_regime_stage(delta, n->d->tau, n->d->f_t), n->D, h);
-  if (implicit && c->fits) {
+  if (n->implicit && c->fits) {
     CF_TRY(count_levels(c->scene, n, sigma, &levels));
     snprintf(on, sizeof on, "; sigma = %.3g, %d level%s of multigrid", sigma, levels, levels == 1 ? "" : "s");
   }
-  snprintf(text, sizeof text, "%s%s", plan.why, on);
+  snprintf(text, sizeof text, "%s%s", n->plan.why, on);
   add(c, "scheme", text);
-  add(c, "flux", plan.scalar_form ? "kept as its divergence, one number a cell" : "kept on faces");
-  if (paper && n->waves && n->c * c->dt > 0.5 * h)
+  snprintf(text, sizeof text, "%s%s",
+           n->plan.scalar_form ? "kept as its divergence, one number a cell" : "kept on faces",
+           n->plan.front_filter ? "; front filter on" : "");
+  add(c, "flux", text);
+  if (paper && n->waves && n->c * n->dt > 0.5 * h)
     cf_writing_add(&c->warnings, "  scheme paper smears the fronts of %.40s: `scheme: default` keeps them\n",
                    n->field->name);
   return CF_OK;
@@ -235,16 +256,15 @@ static cf_status add_solver(cf_check *c, const numbers *n, const int field) {
 
 cf_status cf_check_scalar(cf_check *c, const int field) {
   numbers n;
-  CF_TRY(find_numbers(c->scene, field, &n));
+  CF_TRY(find_numbers(c, field, &n));
   cf_writing_add(&c->page, "\n%s\n", n.field->name);
   add_law(c, &n);
   add_waves(c, &n);
   add_stream(c, &n);
   add_words(c, &n);
   add_step(c, &n);
-  if (n.D > 0) CF_TRY(add_solver(c, &n, field));
+  if (n.D > 0) CF_TRY(add_scheme(c, &n));
   if (n.waves && n.d->f_t < 0.1)
-    cf_writing_add(&c->page, "  %-13s %s\n", "note",
-                   "values may fall below 0 where fronts meet, as those of the exact solution do");
+    add(c, "note", "values may fall below 0 where fronts meet, as those of the exact solution do");
   return CF_OK;
 }

@@ -18,6 +18,9 @@ typedef struct cf_check {
   cf_writing page, warnings;
 } cf_check;
 
+/* Adds a row, the text wrapped in its column; `indent` blanks stand before the name. */
+void cf_check_add(cf_check *c, int indent, const char *name, const char *text);
+
 /* The least and the largest value of a function of place on a lattice of points in the box. */
 typedef struct cf_extremes {
   double least, largest;
