@@ -231,17 +231,18 @@ static cf_status count_levels(const cf_scene *scene, const numbers *n, const dou
 }
 
 static cf_status add_scheme(cf_check *c, const numbers *n) {
-  char text[256], on[128] = "";
+  char text[256];
   int levels;
   const bool paper = n->plan.scheme == CF_DIFFUSE_PAPER;
   const double delta = (paper ? 1 : 1 - sqrt(0.5)) * n->dt, h = c->scene->spacing;
   const double sigma = cf_regime_sigma(cf_regime_stage(delta, n->d->tau, n->d->f_t), n->D, h);
+  add(c, "scheme", n->plan.why);
   if (n->implicit && c->fits) {
     CF_TRY(count_levels(c->scene, n, sigma, &levels));
-    snprintf(on, sizeof on, "; sigma = %.3g, %d level%s of multigrid", sigma, levels, levels == 1 ? "" : "s");
+    snprintf(text, sizeof text, "sigma = %.3g, %d level%s of multigrid", sigma, levels,
+             levels == 1 ? "" : "s");
+    add(c, "solver", text);
   }
-  snprintf(text, sizeof text, "%s%s", n->plan.why, on);
-  add(c, "scheme", text);
   snprintf(text, sizeof text, "%s%s",
            n->plan.scalar_form ? "kept as its divergence, one number a cell" : "kept on faces",
            n->plan.front_filter ? "; front filter on" : "");
