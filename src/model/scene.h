@@ -27,8 +27,9 @@
 #define CF_MODEL_WORDS(W) W(TRACER, tracer)
 #define CF_SCHEME_WORDS(W) \
   W(DEFAULT, default) W(PAPER, paper) W(SDIRK2, sdirk2) W(LEAPFROG, leapfrog) W(WAVE, wave)
-#define CF_SWITCH_WORDS(W)    W(OFF, off) W(ON, on)
-#define CF_FLUX_RATE_WORDS(W) W(MATERIAL, material) W(CONSERVATIVE, conservative) W(OBJECTIVE, objective)
+#define CF_SWITCH_WORDS(W) W(OFF, off) W(ON, on)
+#define CF_FLUX_RATE_WORDS(W) \
+  W(MATERIAL, material) W(CONSERVATIVE, conservative) W(OBJECTIVE, objective) W(PARTIAL, partial)
 #define CF_FILTER_WORDS(W)    W(AUTO, auto) W(ON, on) W(OFF, off)
 #define CF_ADVECTION_WORDS(W) W(PPM, ppm) W(LINEAR, linear) W(WENO5, weno5) W(CUBIC, cubic)
 #define CF_SHAPE_WORDS(W)     W(BOX, box) W(SPHERE, sphere) W(EVERYWHERE, everywhere)
@@ -138,8 +139,8 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
     "implicit stages; leapfrog: explicit substeps; wave: explicit, sharpest fronts (f_t = 0, one k)")        \
   P(flux_rate, word, "objective", "", CF_WORDS(CF_FLUX_RATE_WORDS),                                          \
     "How a flux is carried by the flow: material (eq. 10), conservative (eq. 9), objective (turns and "      \
-    "stretches "                                                                                             \
-    "with the flow)")                                                                                        \
+    "stretches with the flow), partial (not at all: the single-field model of Appendix A, whose wave "       \
+    "speeds are wrong; for comparison)")                                                                     \
   P(front_filter, word, "auto", "", CF_WORDS(CF_FILTER_WORDS),                                               \
     "Takes the ripples off sharp fronts; auto: on where f_t is below 0.01")                                  \
   P(positivity, word, "off", "", CF_WORDS(CF_SWITCH_WORDS),                                                  \

@@ -32,6 +32,7 @@ static cf_status move_scalar(cf_advect *a, cf_tracer_scalar *s) {
   s->ledger.left += through.left;
   if (!s->has_memory) return CF_OK;
   if (s->plan.scalar_form) return cf_advect_cell(a, &s->memory_walls, s->s, NULL);
+  if (s->scene->flux_rate == CF_SCENE_FLUX_RATE_PARTIAL) return CF_OK; /* Appendix A's pitfall */
   return cf_advect_face(a, &s->walls, rate_of(s), s->q);
 }
 
