@@ -117,8 +117,10 @@ CF_KERNEL void smooth_cells(const int dim, const int variable, const int clashes
     cf_real diagonal;
     const cf_real residual = b[start + i] - apply_at(dim, variable, &c, x, i, start + i, &diagonal);
     if (clashes) diagonal += clash_at(dim, n, &c, i, start + i);
-    const cf_real step = omega * residual / (diagonal > 0 ? diagonal : 1);
-    if (((i ^ skip) & 1) == 0 && diagonal > 0) x[start + i] += step;
+    const cf_real inverse = 1 / (diagonal > 0 ? diagonal : 1);
+    const cf_real share = variable ? 1 - c.alpha_cell[start + i] * inverse : 0;
+    const cf_real factor = variable ? 1 + (omega - 1) * share * share : omega;
+    if (((i ^ skip) & 1) == 0 && diagonal > 0) x[start + i] += factor * (residual * inverse);
   }
 }
 

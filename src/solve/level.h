@@ -66,7 +66,8 @@ void cf_level_residual(const cf_level *l, cf_cell x, cf_cell b, cf_cell r);
 /* y = A x. */
 void cf_level_apply(const cf_level *l, cf_cell x, cf_cell y);
 
-/* One red-black sweep of over-relaxed Gauss-Seidel on A x = b. */
+/* One red-black sweep of over-relaxed Gauss-Seidel on A x = b. Where alpha is a field, a cell is over-relaxed by
+ * what diffusion has of its diagonal: one that a large alpha holds is simply solved. */
 void cf_level_smooth(const cf_level *l, cf_cell b, cf_real omega, cf_cell x);
 
 /* The diagonal's part that diffusion adds in the middle of the box, over alpha: how much there is to smooth.

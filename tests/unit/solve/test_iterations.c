@@ -145,6 +145,39 @@ static void large_boxes_take_few_iterations(void **state) {
   print_worst(&sheet);
 }
 
+/* Cells held at a value by a large alpha, one in seven or a third of the box: they must not drown the others. */
+static void held_cells_cost_nothing(void **state) {
+  (void)state;
+  const int n[][3] = {{13, 9, 5}, {26, 18, 10}, {40, 33, 1}};
+  int worst_count = 0;
+  for (int q = 0; q < 3; ++q)
+    for (int pattern = 0; pattern < 2; ++pattern)
+      for (int v = 0; v < WALLS; v += 2)
+        for (double weight = 1e3; weight < 1e13; weight *= 1e3) {
+          solve_case c = box(q < 2 ? 3 : 2, n[q][0], n[q][1], n[q][2], q < 2 ? walls_3d[v] : walls_2d[v]);
+          c.sigma = 1;
+          c.side = SIDE_NOISY;
+          solve_setup s;
+          case_begin(&c, &s);
+          OK(cf_cell_create(&s.alpha, &s.g.box));
+          for (ptrdiff_t r = 0; r < cf_box_rows(&s.g.box); ++r)
+            for (int i = 0; i < c.n[0]; ++i) {
+              const ptrdiff_t p = cf_box_row(&s.g.box, r) + i;
+              const bool held = pattern == 0 ? (i + r) % 7 == 0 : i < c.n[0] / 3;
+              s.alpha.at[p] = (cf_real)(held ? weight : 1);
+              if (held) s.b.at[p] = 0;
+            }
+          OK(cf_helmholtz_set(s.A, &(cf_coefficients){.alpha_at = &s.alpha, .beta = 20}));
+          cf_solve_report report;
+          OK(cf_helmholtz_solve(s.A, s.b, &(cf_solve_options){1e-6, 100}, s.x, &report));
+          BELOW(cf_helmholtz_residual(s.A, s.x, s.b), 1.01e-6);
+          case_end(&s);
+          BELOW(report.iterations, 10);
+          worst_count = report.iterations > worst_count ? report.iterations : worst_count;
+        }
+  print_message("held cells: at most %d\n", worst_count);
+}
+
 /* With few levels the coarsest is solved to its tolerance by conjugate gradients, however large. */
 static void any_number_of_levels_does(void **state) {
   (void)state;
@@ -170,6 +203,7 @@ int main(void) {
       cmocka_unit_test(jumps_of_ten_cost_little),
       cmocka_unit_test(counts_do_not_grow_with_the_box),
       cmocka_unit_test(large_boxes_take_few_iterations),
+      cmocka_unit_test(held_cells_cost_nothing),
       cmocka_unit_test(any_number_of_levels_does),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
