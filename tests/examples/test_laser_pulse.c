@@ -91,7 +91,7 @@ static void a_spot_sends_its_heat_no_further_than_the_front(void **state) {
   example e = example_open("laser-pulse/scene.yaml", NULL);
   example_run(&e, INFINITY);
   const cf_view v = example_field(&e, "temperature", 0);
-  const double c = sqrt(D / 16), far = c * 18 + 4e-4; /* four beams, or eight depths */
+  const double c = sqrt(D / 16), far = c * cf_sim_end(e.sim) + 4e-4; /* four beams, or eight depths */
   double most = 0, beyond = 0;
   for (int j = 0; j < v.shape[1]; ++j)
     for (int i = 0; i < v.shape[0]; ++i) {
