@@ -22,6 +22,7 @@ enum { LATTICE_2D = 256, LATTICE_3D = 64 };
 
 /* Fewer cells than this do not carry a wave; more cells a step than this smear a front. */
 #define CELLS_A_WAVE     6.0
+#define CELLS_A_SIDE     8
 #define CELLS_A_STEP     2.0
 #define STEPS_OF_NOTHING 10.0 /* dt/tau above this: memory is over within a step */
 
@@ -185,8 +186,10 @@ static void add_stream(cf_check *c, const numbers *n) {
 /* The keys that could stand for k, tau and f_t; the thickness is that of the box. */
 static void add_words(cf_check *c, const numbers *n) {
   char text[512];
-  double side = c->scene->domain.size.value[0];
-  for (int a = 1; a < c->scene->dim; ++a) side = CF_MIN(side, c->scene->domain.size.value[a]);
+  double side = INFINITY;
+  for (int a = 0; a < c->scene->dim; ++a) /* an axis of a few cells stands for a scene of fewer dimensions */
+    if (c->scene->domain.cells.value[a] >= CELLS_A_SIDE) side = CF_MIN(side, c->scene->domain.size.value[a]);
+  if (isinf(side)) side = 0;
   const cf_scene_measures m = cf_scene_measure(n->D, n->d->tau, n->d->f_t, c->speed, side);
   cf_scene_measures_text(&m, side, text, sizeof text);
   if (n->D > 0) add(c, "same as", text);
