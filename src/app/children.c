@@ -24,6 +24,8 @@ static void become(const cf_child *child, const pid_t parent) {
   if (nothing >= 0) dup2(nothing, STDOUT_FILENO);
   if (child->said != NULL) dup2(fileno(child->said), STDERR_FILENO);
   signal(SIGPIPE, SIG_DFL);
+  /* Ctrl-C goes to this process alone, which passes it on once: a second one would end a run without ceremony. */
+  setpgid(0, 0);
   execv("/proc/self/exe", child->argv);
   _exit(NOT_STARTED);
 }
