@@ -14,6 +14,7 @@
 #include "io/image.h"
 #include "model/scene.h"
 #include "render/preview.h"
+#include "session/overlay.h"
 
 enum { WIDTH = 1400, CAPTION = 160 };
 
@@ -112,10 +113,19 @@ static cf_status draw_fields(cf_canvas *c, const exhibit *e, const int count, co
   const char *field = s->field != NULL ? s->field : e[0].scene->output.preview.field;
   const cf_preview p = common_preview(e, count, field);
   cf_panel *panel;
+  cf_overlay *overlay;
   CF_TRY(CF_NEW(&panel, count));
-  for (int i = 0; i < count; ++i)
-    panel[i] = (cf_panel){.grid = &e[i].frame.grid, .f = e[i].values.at, .caption = e[i].caption};
-  const cf_status status = cf_sheet_draw(c, count, panel, columns, &p);
+  cf_status status = CF_NEW(&overlay, count);
+  for (int i = 0; status == CF_OK && i < count; ++i) {
+    cf_overlay_cones(e[i].scene, &e[i].frame.grid, e[i].frame.time, field, &overlay[i]);
+    panel[i] = (cf_panel){.grid = &e[i].frame.grid,
+                          .f = e[i].values.at,
+                          .caption = e[i].caption,
+                          .lines = overlay[i].count,
+                          .line = overlay[i].line};
+  }
+  if (status == CF_OK) status = cf_sheet_draw(c, count, panel, columns, &p);
+  cf_free(overlay);
   cf_free(panel);
   return status;
 }

@@ -74,7 +74,7 @@ static void magnitude(const cf_box *box, const cf_face q, const cf_cell out) {
 static cf_status draw(const cf_sim *sim, const cf_entry *e, const cf_real *values, cf_canvas *canvas) {
   const cf_scene_preview *wish = &sim->scene->output.preview;
   cf_overlay overlay;
-  cf_overlay_cones(sim, e->name, &overlay);
+  cf_overlay_cones(sim->scene, &sim->grid, sim->time, e->name, &overlay);
   cf_preview p = cf_preview_default(e->name, e->unit);
   p.title = sim->scene->title;
   p.time = sim->time;

@@ -7,7 +7,8 @@
 #ifndef CF_SESSION_OVERLAY_H
 #define CF_SESSION_OVERLAY_H
 
-#include "model/sim.h"
+#include "grid/grid.h"
+#include "model/scene.h"
 #include "render/preview.h"
 
 #define CF_OVERLAY_MAX 16
@@ -19,7 +20,9 @@ typedef struct cf_overlay {
   char label[CF_OVERLAY_MAX][48];
 } cf_overlay;
 
-/* The cones of the sources of scalar `field` in a plane scene with a steady flow; none where H_c <= 1. */
-void cf_overlay_cones(const cf_sim *sim, const char *field, cf_overlay *overlay);
+/* The cones of the sources of scalar `field` in a plane scene with a steady flow, at time t; none where H_c <= 1.
+ * The overlay is not to be moved: its lines point into it. */
+void cf_overlay_cones(const cf_scene *scene, const cf_grid *g, double t, const char *field,
+                      cf_overlay *overlay);
 
 #endif
