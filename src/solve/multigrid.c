@@ -10,13 +10,12 @@
 
 #include "base/mem.h"
 #include "grid/sweep.h"
+#include "solve/box_solver.h"
 #include "solve/pcg.h"
 #include "solve/transfer.h"
 
 /* On the coarsest level: so far beyond any outer tolerance that its error is no part of the cycle's. */
 #define COARSEST_TOLERANCE 1e-8
-/* Where diffusion adds less than this to the diagonal, Gauss-Seidel alone is enough. */
-#define STIFF_ENOUGH 3.0
 
 void cf_level_clear(const cf_level *l, const cf_cell x) {
   CF_PARALLEL_ROWS (&l->box, l->threads, r)
@@ -57,6 +56,7 @@ void cf_helmholtz_destroy(cf_helmholtz *A) {
   cf_free(A->scratch);
   cf_free(A->line);
   cf_direct_destroy(&A->direct);
+  cf_box_solver_destroy(A->box);
   cf_free(A);
 }
 
@@ -138,13 +138,14 @@ cf_status cf_helmholtz_create(cf_helmholtz **A, const cf_grid *g, const cf_walls
   fresh->walls = *walls;
   fresh->wanted = levels;
   fresh->coarse_level = -1;
-  const cf_status s = hierarchy_create(fresh);
+  cf_status s = hierarchy_create(fresh);
+  if (s == CF_OK) s = cf_helmholtz_set(fresh, &(cf_coefficients){.alpha = 1, .beta = 0});
   if (s != CF_OK) {
     cf_helmholtz_destroy(fresh);
     return s;
   }
   *A = fresh;
-  return cf_helmholtz_set(fresh, &(cf_coefficients){.alpha = 1, .beta = 0});
+  return CF_OK;
 }
 
 /* --- coefficients ------------------------------------------------------------------------------------- */
@@ -214,13 +215,16 @@ static cf_status set_variable(cf_helmholtz *A, const cf_coefficients *c) {
   return CF_OK;
 }
 
-static void set_constant(cf_helmholtz *A, const cf_coefficients *c) {
+static cf_status set_constant(cf_helmholtz *A, const cf_coefficients *c) {
   for (int l = 0; l < A->levels; ++l) {
     set_tables(&A->level[l], c->alpha, c->beta);
     A->level[l].variable = false;
   }
   A->depth = 1;
-  while (A->depth < A->levels && cf_level_stiffness(&A->level[A->depth - 1]) > STIFF_ENOUGH) ++A->depth;
+  while (A->depth < A->levels && cf_level_stiffness(&A->level[A->depth - 1]) > CF_STIFF_ENOUGH) ++A->depth;
+  A->beta = c->beta;
+  if (A->box == NULL) CF_TRY(cf_box_solver_create(&A->box, A));
+  return CF_OK;
 }
 
 static bool has_held_wall(const cf_helmholtz *A) {
@@ -256,16 +260,17 @@ cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
   if (variable)
     CF_TRY(set_variable(A, c));
   else
-    set_constant(A, c);
+    CF_TRY(set_constant(A, c));
   const bool no_alpha = c->alpha_at == NULL ? c->alpha == 0 : cf_level_sum(&A->level[0], *c->alpha_at) == 0;
-  A->singular = no_alpha && !has_held_wall(A);
+  A->has_held_wall = has_held_wall(A);
+  A->singular = no_alpha && !A->has_held_wall;
+  A->in_box = !variable && cf_box_solver_set(A->box, A);
   return coarsest_create(A);
 }
 
 /* --- the cycle ---------------------------------------------------------------------------------------- */
 
-/* omega = 1 + (share of diffusion in the diagonal)^2 / 5. */
-static cf_real relaxation(const cf_level *l) {
+cf_real cf_level_relaxation(const cf_level *l) {
   const double s = cf_level_stiffness(l), share = isinf(s) ? 1 : s / (1 + s);
   return (cf_real)(1 + 0.2 * share * share);
 }
@@ -286,7 +291,7 @@ static void cycle(cf_helmholtz *A, const int at, const cf_cell b, const cf_cell 
     cf_pcg_plain(l, A->singular, b, &o, A->coarse, x);
     return;
   }
-  const cf_real omega = relaxation(l);
+  const cf_real omega = cf_level_relaxation(l);
   cf_level_smooth(l, b, omega, x);
   if (at < A->depth - 1) {
     cf_level *below = &A->level[at + 1];

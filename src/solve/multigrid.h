@@ -11,14 +11,21 @@
 
 #define CF_LEVELS_MAX 40
 
+/* Where diffusion adds less than this to the diagonal, Gauss-Seidel alone is enough. */
+#define CF_STIFF_ENOUGH 3.0
+
 struct cf_helmholtz {
   cf_grid grid;
   cf_walls walls;     /* kinds */
   int levels, wanted; /* levels made; asked for by the caller, 0: as needed */
   int depth;          /* levels that the present coefficients use */
   cf_level level[CF_LEVELS_MAX];
-  cf_halo outside;            /* what a caller's x must hold beyond the walls: the other side, or 0 */
+  cf_halo outside; /* what a caller's x must hold beyond the walls: the other side, or 0 */
+  bool has_held_wall;
   bool singular;              /* alpha = 0 and no held wall */
+  double beta;                /* where it is a number */
+  struct cf_box_solver *box;  /* the fast path; NULL until coefficients are numbers */
+  bool in_box;                /* the present coefficients are a case for it */
   bool owns_alpha, owns_beta; /* level 0's fields are ours, filled with a number */
   cf_cell r, p, Ap, z;        /* of conjugate gradients on the finest level */
   cf_cell coarse[3];          /* the same on the coarsest */
@@ -33,5 +40,8 @@ void cf_multigrid_cycle(cf_helmholtz *A, cf_cell r, cf_cell z);
 
 /* Sets the vector to zero on the cells of the box. */
 void cf_level_clear(const cf_level *l, cf_cell x);
+
+/* omega of Gauss-Seidel: 1 + (share of diffusion in the diagonal)^2 / 5. */
+cf_real cf_level_relaxation(const cf_level *l);
 
 #endif

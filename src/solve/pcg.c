@@ -11,6 +11,7 @@
 #include <math.h>
 
 #include "grid/sweep.h"
+#include "solve/box_solver.h"
 #include "solve/multigrid.h"
 
 CF_CLONES static void add_row(const int n, const cf_real factor, const cf_real *from, cf_real *to) {
@@ -44,7 +45,7 @@ static void scale_and_add(const cf_level *l, const double factor, const cf_cell 
   }
 }
 
-static void shift(const cf_level *l, const double amount, const cf_cell x) {
+void cf_level_shift(const cf_level *l, const double amount, const cf_cell x) {
   CF_PARALLEL_ROWS (&l->box, l->threads, r)
     shift_row(l->box.n[0], (cf_real)amount, x.at + cf_box_row(&l->box, r));
 }
@@ -61,7 +62,7 @@ static double volume(const cf_level *l) {
 
 static double mean_of(const cf_level *l, const cf_cell x) { return cf_level_sum(l, x) / volume(l); }
 
-void cf_level_remove_mean(const cf_level *l, const cf_cell x) { shift(l, -mean_of(l, x), x); }
+void cf_level_remove_mean(const cf_level *l, const cf_cell x) { cf_level_shift(l, -mean_of(l, x), x); }
 
 int cf_pcg_plain(cf_level *l, const bool singular, const cf_cell b, const cf_solve_options *o,
                  const cf_cell work[3], const cf_cell x) {
@@ -110,14 +111,11 @@ double cf_helmholtz_residual(cf_helmholtz *A, const cf_cell x, const cf_cell b) 
   return bb > 0 ? sqrt(cf_level_dot(l, A->z, A->z) / bb) : sqrt(cf_level_dot(l, A->z, A->z));
 }
 
-cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_options *o, const cf_cell x,
+static cf_status solve_plain(cf_helmholtz *A, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                              cf_solve_report *report) {
   cf_level *l = &A->level[0];
   const cf_cell r = A->r, p = A->p, Ap = A->Ap, z = A->z;
-  *report = (cf_solve_report){.levels = A->depth};
   set_outside(A, x);
-  if (A->singular) cf_level_remove_mean(l, b);
-  const double mean = A->singular ? mean_of(l, x) : 0;
   cf_level_residual(l, x, b, r);
   const double bb = cf_level_dot(l, b, b);
   double rr = cf_level_dot(l, r, r);
@@ -128,11 +126,13 @@ cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_op
   if (bb == 0) cf_level_clear(l, x);
   const double enough = o->tolerance * o->tolerance * bb;
   double zr_old = 0, a = 0;
+  const int first = report->iterations;
   while (bb > 0 && rr > enough && report->iterations < o->max_iterations) {
     cf_multigrid_cycle(A, r, z);
     if (A->singular) cf_level_remove_mean(l, z);
-    const double beta = report->iterations == 0 ? 0 : -a * cf_level_dot(l, z, Ap) / zr_old;
+    const double beta = report->iterations == first ? 0 : -a * cf_level_dot(l, z, Ap) / zr_old;
     const double zr = cf_level_dot(l, z, r);
+    if (report->iterations == first) cf_level_clear(l, p); /* 0 times what a breakdown left is not 0 */
     scale_and_add(l, beta, z, p);
     cf_level_apply(l, p, Ap);
     const double pAp = cf_level_dot(l, p, Ap), pr = cf_level_dot(l, p, r);
@@ -146,7 +146,28 @@ cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_op
   }
   report->residual = bb > 0 ? sqrt(rr / bb) : 0;
   report->converged = bb == 0 || rr <= enough;
-  if (A->singular) shift(l, mean - mean_of(l, x), x);
+  return CF_OK;
+}
+
+const char *cf_helmholtz_method(const cf_helmholtz *A) {
+  if (cf_level_is_line(&A->level[0])) return "line";
+  if (A->depth == 1 && cf_level_is_few(&A->level[0])) return "direct";
+  return A->in_box ? cf_box_solver_method(A->box) : "multigrid-pcg";
+}
+
+cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_options *o, const cf_cell x,
+                             cf_solve_report *report) {
+  cf_level *l = &A->level[0];
+  *report = (cf_solve_report){.levels = A->depth, .method = cf_helmholtz_method(A)};
+  if (A->singular) cf_level_remove_mean(l, b);
+  const double mean = A->singular ? mean_of(l, x) : 0;
+  bool finished = false;
+  if (A->in_box) CF_TRY(cf_box_solver_run(A->box, A, b, o, x, report, &finished));
+  if (!finished) {
+    if (A->in_box) report->method = "multigrid-pcg";
+    CF_TRY(solve_plain(A, b, o, x, report));
+  }
+  if (A->singular) cf_level_shift(l, mean - mean_of(l, x), x);
   return CF_OK;
 }
 

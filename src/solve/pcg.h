@@ -14,6 +14,9 @@
 int cf_pcg_plain(cf_level *l, bool singular, cf_cell b, const cf_solve_options *o, const cf_cell work[3],
                  cf_cell x);
 
+/* x += amount. */
+void cf_level_shift(const cf_level *l, double amount, cf_cell x);
+
 /* Subtracts the mean. */
 void cf_level_remove_mean(const cf_level *l, cf_cell x);
 

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the fast path does to the rows of a level, as stages that a pass strings together (wave.h).
+ *
+ * With A' e = r the equation of the correction and d the diagonal:
+ *
+ *     FORM         r = (b - A x) / scale in double, and the sums of squares of b - A x, b and x; then FIRST
+ *     FIRST        red: e = omega r / d, what a half sweep does to e = 0 (a part of FORM, UPDATE, RESTRICT)
+ *     SECOND       black: e = omega (r + neighbours) / d, what the next half sweep does
+ *     RED, BLACK   a half sweep of over-relaxed Gauss-Seidel
+ *     LAST         a black half sweep that leaves the residual behind in r
+ *     UPDATE       red: r -= A' e; all: x += gain e, and the sum of r^2; then FIRST on the new r
+ *     RESTRICT     the residual of SECOND, averaged over the children of a coarse cell; FIRST on the coarse level
+ *     PROLONG      e += interpolated correction of the coarse level
+ *
+ * The black half after SECOND or LAST needs no stencil for its residual: the half sweep took it out but for what
+ * over-relaxation did, (1 - omega) of what was there, since its neighbours, red ones all, have not changed.
+ * Across the seam of an odd periodic axis neighbours do share a colour; levels that have one take
+ *
+ *     CLEAR        e = 0
+ *     RESIDUAL     r -= A' e for all cells (UPDATE then leaves r alone), and RESTRICT with stencils everywhere.
+ *
+ * r and the e added to x stay true to each other to about 1e-8 of the r at the start: A' e is formed from
+ * differences, which are exact where e is smooth, and the change of r from the change of e as it was stored.
+ */
+#ifndef CF_SOLVE_STAGES_H
+#define CF_SOLVE_STAGES_H
+
+#include "solve/split.h"
+
+typedef enum cf_stage {
+  CF_STAGE_FORM,
+  CF_STAGE_FIRST,
+  CF_STAGE_SECOND,
+  CF_STAGE_RED,
+  CF_STAGE_BLACK,
+  CF_STAGE_LAST,
+  CF_STAGE_UPDATE,
+  CF_STAGE_RESTRICT,
+  CF_STAGE_PROLONG,
+  CF_STAGE_CLEAR,
+  CF_STAGE_RESIDUAL,
+  CF_STAGES
+} cf_stage;
+
+/* Longest list of stages in one pass. */
+#define CF_PASS_STAGES 40
+
+typedef struct cf_pass {
+  const cf_split *at, *coarse; /* coarse: NULL on the coarsest level */
+  int count;
+  cf_stage stage[CF_PASS_STAGES];
+  float omega[CF_PASS_STAGES]; /* of the half sweep; 0: the level's */
+
+  /* of the finest level alone */
+  cf_real *x;
+  const cf_real *b;
+  double alpha, beta; /* not scaled */
+  double shift;       /* FORM subtracts it from b - A x */
+  double scale;       /* FORM divides by it */
+  double gain;        /* UPDATE: x += gain e */
+  ptrdiff_t sums;     /* pieces of rows that the level has */
+  double *rows; /* `sums` numbers for the squares of b - A x (FORM) or r (UPDATE), then of b, then of x */
+} cf_pass;
+
+/* Pieces of some rows of a plane, elements [from, to) of their halves, and a thread's own memory. */
+typedef struct cf_strip {
+  int j, end; /* rows [j, end) */
+  int k, from, to;
+  ptrdiff_t sum,
+      sum_step; /* where in `rows` the sums of row j go, and how far from there those of the next row */
+  void *scratch;
+} cf_strip;
+
+/* Bytes of scratch that rows of n cells need. */
+size_t cf_stage_scratch(const cf_split *s);
+
+/* What stage number `number` of the pass does to a strip. */
+void cf_stage_run(const cf_pass *p, int number, const cf_strip *t);
+
+/* Whether the stage reads e (or x) of neighbouring rows, so that ghosts must be right. */
+bool cf_stage_reads_around(cf_stage stage);
+
+#endif
