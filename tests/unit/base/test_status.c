@@ -82,3 +82,4 @@ int main(void) {
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
+/* also in single precision */

@@ -270,7 +270,7 @@ static void held_walls_enter_the_right_side(void **state) {
   (void)state;
   for (int dim = 2; dim <= 3; ++dim)
     for (int axis = 0; axis < dim; ++axis) {
-      small s = {.walls = {{{0}}}};
+      small s = {0};
       const int n[3] = {6, 5, 7};
       OK(cf_grid_init(&s.g, dim, n, 0.5, NULL));
       s.cells = (int)cf_box_cells(&s.g.box);
