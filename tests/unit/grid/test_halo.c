@@ -34,7 +34,9 @@ static int source(const cf_box *b, const cf_halo *h, const int component, const 
 static void every_ghost_follows_its_rule(void **state) {
   (void)state;
   for (int round = 0; round < 4000; ++round) {
-    const int dim = 2 + pick(2), n[3] = {1 + pick(6), 1 + pick(6), 1 + pick(6)}, width = 1 + pick(3);
+    const int dim = 2 + pick(2), width = 1 + pick(3);
+    int n[3];
+    for (int a = 0; a < 3; ++a) n[a] = 1 + pick(6);
     cf_box b;
     OK(cf_box_init(&b, dim, n, 3));
     const int component = pick(dim + 1) - 1;
