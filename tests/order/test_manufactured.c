@@ -106,7 +106,6 @@ static void errors(const int dim, const int n, const cf_diffuse_scheme scheme, d
   c.p.f_t = m.F;
   c.p.scheme = scheme;
   c.p.solver.tolerance = 1e-9;
-  c.g.threads = 2;
   c.source = (cf_source){.rate = source, .context = &m};
   diffuse_begin(&c);
   double q[3], phi, W;

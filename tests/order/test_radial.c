@@ -44,7 +44,6 @@ static void compare(const int dim, const double F, const double time, const doub
   c.p.tau = tau;
   c.p.f_t = F;
   c.p.solver.tolerance = 1e-6;
-  c.g.threads = 2;
   diffuse_begin(&c);
   diffuse_fill(&c, gauss, &w);
   const int steps = (int)ceil(time * sqrt(k / tau) / (cfl * h));
