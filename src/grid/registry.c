@@ -52,8 +52,8 @@ cf_status cf_registry_add_face(cf_registry *r, const char *name, const char *uni
   return add(r, name, unit, (cf_entry){.kind = CF_KIND_FACE, .face = f, .components = r->grid->box.dim});
 }
 
-cf_status cf_registry_add_particles(cf_registry *r, const cf_entry *particles) {
-  return add(r, particles->name, particles->unit, *particles);
+cf_status cf_registry_add_particles(cf_registry *r, cf_particles *set) {
+  return add(r, set->name, "", (cf_entry){.kind = CF_KIND_PARTICLES, .particles = set, .components = 1});
 }
 
 cf_status cf_registry_add_numbers(cf_registry *r, const char *name, const char *unit, double *number,
@@ -63,4 +63,10 @@ cf_status cf_registry_add_numbers(cf_registry *r, const char *name, const char *
 
 cf_status cf_registry_add_counter(cf_registry *r, const char *name, int64_t *counter) {
   return add(r, name, "", (cf_entry){.kind = CF_KIND_COUNTER, .counter = counter, .components = 1});
+}
+
+cf_status cf_registry_add_all(cf_registry *r, const cf_registry *from) {
+  for (int e = 0; e < from->count; ++e)
+    CF_TRY(add(r, from->entry[e].name, from->entry[e].unit, from->entry[e]));
+  return CF_OK;
 }

@@ -74,8 +74,10 @@ cf_status cf_config_new(cf_config *config, void **block, size_t bytes);
 cf_status cf_config_text(cf_config *config, const char **text, const char *format, ...) CF_PRINTF(3, 4);
 
 /* The struct as YAML, with every default filled in, such that reading it again gives the same struct: numbers
- * with 17 digits, expressions as given. The text is the caller's: cf_free. */
-cf_status cf_config_write(const cf_param_table *root, const void *record, char **text);
+ * with 17 digits, expressions as given. Keys of the root that `writes` says no to are left out (NULL: none). The
+ * text is the caller's: cf_free. */
+cf_status cf_config_write(const cf_param_table *root, const void *record,
+                          bool (*writes)(const void *record, const char *key), char **text);
 
 /* What the tables say about `key`, or about all keys if it is NULL. The text is the caller's: cf_free.
  * CF_BAD_USAGE: there is no such key (and which one might have been meant). */

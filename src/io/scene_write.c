@@ -271,8 +271,16 @@ static void add_record(cf_writing *out, const cf_param_table *table, const char 
   }
 }
 
-cf_status cf_config_write(const cf_param_table *root, const void *record, char **text) {
+cf_status cf_config_write(const cf_param_table *root, const void *record,
+                          bool (*writes)(const void *record, const char *key), char **text) {
   cf_writing out = {.text = NULL};
-  add_record(&out, root, record, 0, CF_RECORD_WHOLE);
+  const char *bytes = record;
+  for (int i = 0; i < root->count; ++i) {
+    const cf_param *param = &root->param[i];
+    if (!is_there(param, bytes, CF_RECORD_WHOLE) || (writes != NULL && !writes(record, param->name)))
+      continue;
+    cf_writing_add(&out, "%s:", param->name);
+    add_row(&out, param, bytes + param->offset, 0);
+  }
   return cf_writing_end(&out, text);
 }

@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "io/scene.h"
+#include "model/model.h"
 #include "model/scene_check.h"
 
 #define CF_PARAM_STRUCT cf_scene_domain
@@ -98,8 +99,12 @@ cf_status cf_scene_fail_at(const cf_scene *scene, const char *key, const char *f
   return cf_config_fail_at(scene->config, key, "%s", sentence);
 }
 
+static bool is_read(const void *scene, const char *key) {
+  return cf_model_reads(cf_model_of(((const cf_scene *)scene)->model), key);
+}
+
 cf_status cf_scene_write(const cf_scene *scene, char **text) {
-  return cf_config_write(&cf_scene_table, scene, text);
+  return cf_config_write(&cf_scene_table, scene, is_read, text);
 }
 
 cf_status cf_scene_explain(const char *key, char **text) {

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "io/scene.h"
+#include "model/model.h"
 
 enum { KEY_MAX = 160, FRAMES_MAX = 999999 };
 #define CELLS_MAX 0x1p40
@@ -81,7 +82,8 @@ static cf_status check_time(const cf_scene *scene) {
 /* What a run can show: the fields of the scene, and the flow if there is one. */
 static cf_status check_field_name(const cf_scene *scene, const char *key, const char *name) {
   const char *meant = NULL;
-  if (scene->given.velocity && strncmp(key, "output.", 7) == 0 && strcmp(name, "velocity") == 0) return CF_OK;
+  const cf_model *model = cf_model_of(scene->model);
+  if (strncmp(key, "output.", 7) == 0 && model->shows != NULL && model->shows(scene, name)) return CF_OK;
   if (cf_scene_field_index(scene, name) >= 0 || cf_scene_flux_scalar(scene, name) >= 0) return CF_OK;
   for (int i = 0; i < scene->fields.count && meant == NULL; ++i)
     if (cf_param_distance(name, scene->fields.item[i].name) >= 0) meant = scene->fields.item[i].name;
@@ -179,19 +181,40 @@ static cf_status check_source(const cf_source_check *check) {
   return CF_OK;
 }
 
+/* --- the model's keys ------------------------------------------------------------------------- */
+
+/* A key that other models read and this one does not would be ignored without a word. */
+static cf_status check_keys(const cf_scene *scene) {
+  const cf_model *model = cf_model_of(scene->model);
+  for (int i = 0; i < cf_scene_table.count; ++i) {
+    const char *key = cf_scene_table.param[i].name;
+    if (cf_scene_has(scene, key) && !cf_model_reads(model, key))
+      return cf_scene_fail_at(scene, key, "%s is not a key of `model: %s`", key, model->name);
+  }
+  return CF_OK;
+}
+
 /* --- output ----------------------------------------------------------------------------------- */
+
+static cf_status default_outputs(cf_scene *scene) {
+  const char *const *own = cf_model_of(scene->model)->outputs;
+  cf_param_texts *fields = &scene->output.fields;
+  int count = scene->fields.count;
+  void *block;
+  if (own != NULL)
+    for (count = 0; own[count] != NULL;) ++count;
+  CF_TRY(cf_config_new(scene->config, &block, (size_t)count * sizeof *fields->item));
+  fields->item = block;
+  fields->count = count;
+  for (int i = 0; i < count; ++i) fields->item[i] = own != NULL ? own[i] : scene->fields.item[i].name;
+  scene->output.given.fields = true;
+  return CF_OK;
+}
 
 static cf_status resolve_output_fields(cf_scene *scene) {
   cf_scene_output *output = &scene->output;
   char key[KEY_MAX];
-  if (!output->given.fields) {
-    void *block;
-    CF_TRY(cf_config_new(scene->config, &block, (size_t)scene->fields.count * sizeof *output->fields.item));
-    output->fields.item = block;
-    output->fields.count = scene->fields.count;
-    for (int i = 0; i < scene->fields.count; ++i) output->fields.item[i] = scene->fields.item[i].name;
-    output->given.fields = true;
-  }
+  if (!output->given.fields) CF_TRY(default_outputs(scene));
   for (int i = 0; i < output->fields.count; ++i) {
     const char *name = output->fields.item[i];
     snprintf(key, sizeof key, "output.fields.%d", i);
@@ -206,8 +229,9 @@ static cf_status resolve_output_fields(cf_scene *scene) {
 static cf_status resolve_preview(cf_scene *scene) {
   cf_scene_preview *preview = &scene->output.preview;
   const cf_param_texts *fields = &scene->output.fields;
+  const char *const *own = cf_model_of(scene->model)->outputs;
   if (preview->field[0] == '\0')
-    preview->field = fields->count > 0 ? fields->item[0] : scene->fields.item[0].name;
+    preview->field = fields->count > 0 ? fields->item[0] : own != NULL ? own[0] : scene->fields.item[0].name;
   CF_TRY(check_field_name(scene, "output.preview.field", preview->field));
   if (preview->range.count == 2 && !(preview->range.value[0] < preview->range.value[1]))
     return cf_scene_fail_at(scene, "output.preview.range",
@@ -218,12 +242,15 @@ static cf_status resolve_preview(cf_scene *scene) {
 /* --- all -------------------------------------------------------------------------------------- */
 
 cf_status cf_scene_resolve(cf_scene *scene) {
+  const cf_model *model = cf_model_of(scene->model);
+  CF_TRY(check_keys(scene));
   CF_TRY(resolve_domain(scene));
   CF_TRY(check_time(scene));
   CF_TRY(cf_scene_resolve_fields(scene));
   CF_TRY(cf_scene_check_axes(scene, &scene->velocity, scene->given.velocity, scene->dim, "velocity"));
   for (int i = 0; i < scene->sources.count; ++i)
     CF_TRY(check_source(&(cf_source_check){scene, &scene->sources.item[i], i}));
+  if (model->resolve != NULL) CF_TRY(model->resolve(scene));
   CF_TRY(resolve_output_fields(scene));
   return resolve_preview(scene);
 }

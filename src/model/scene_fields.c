@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "io/scene.h"
+#include "model/model.h"
 #include "model/scene_check.h"
 #include "model/scene_params.h"
 
@@ -99,14 +100,35 @@ static cf_status check_walls(const cf_scene *scene, const char *path, const cf_p
 
 /* --- fields ----------------------------------------------------------------------------------- */
 
-/* One scalar, phi, where a scene names no fields. */
-static cf_status default_field(cf_scene *scene) {
+static cf_status add_field(cf_scene *scene, const char *name) {
+  const int count = scene->fields.count;
   void *block;
-  CF_TRY(cf_config_new(scene->config, &block, sizeof(cf_scene_field)));
+  CF_TRY(cf_config_new(scene->config, &block, (size_t)(count + 1) * sizeof(cf_scene_field)));
+  if (count > 0) memcpy(block, scene->fields.item, (size_t)count * sizeof(cf_scene_field));
   scene->fields.item = block;
-  scene->fields.count = 1;
-  scene->fields.item[0].name = "phi";
-  return cf_config_fill(scene->config, &cf_scene_field_table, &scene->fields.item[0]);
+  scene->fields.count = count + 1;
+  scene->fields.item[count].name = name;
+  return cf_config_fill(scene->config, &cf_scene_field_table, &scene->fields.item[count]);
+}
+
+/* The scalars that the model has by itself are there, named or not, and no others; a model that takes any has one,
+ * phi, where the scene names none. */
+static cf_status complete_fields(cf_scene *scene) {
+  const cf_model *model = cf_model_of(scene->model);
+  char key[KEY_MAX];
+  if (!cf_model_reads(model, "fields")) return CF_OK;
+  if (model->fields == NULL) return scene->fields.count == 0 ? add_field(scene, "phi") : CF_OK;
+  for (int i = 0; i < scene->fields.count; ++i) {
+    const char *name = scene->fields.item[i].name, *const *own = model->fields;
+    while (*own != NULL && strcmp(*own, name) != 0) ++own;
+    snprintf(key, sizeof key, "fields.%s", name);
+    if (*own == NULL && !cf_scene_name_is_flux(name))
+      return cf_scene_fail_at(scene, key, "%s: `model: %s` has no such field; its first is %s", key,
+                              model->name, model->fields[0]);
+  }
+  for (const char *const *own = model->fields; *own != NULL; ++own)
+    if (cf_scene_field_index(scene, *own) < 0) CF_TRY(add_field(scene, *own));
+  return CF_OK;
 }
 
 static cf_status resolve_flux(cf_scene *scene, cf_scene_field *field) {
@@ -154,7 +176,7 @@ cf_status cf_scene_resolve_fields(cf_scene *scene) {
   inherit_walls(scene, &scene->domain.walls, NULL);
   CF_TRY(check_walls(scene, "domain.walls", &scene->domain.walls));
   CF_TRY(cf_scene_resolve_params(scene, "diffusion", &scene->diffusion));
-  if (scene->fields.count == 0) CF_TRY(default_field(scene));
+  CF_TRY(complete_fields(scene));
   for (int i = 0; i < scene->fields.count; ++i) {
     cf_scene_field *field = &scene->fields.item[i];
     const bool flux = cf_scene_name_is_flux(field->name);

@@ -19,6 +19,48 @@ static cf_status register_clock(cf_sim *sim) {
   return cf_registry_add_counter(&sim->registry, "frame", &sim->frame);
 }
 
+/* --- what a frame shows ----------------------------------------------------------------------------------- */
+
+/* Memory for a derived field that the scene asks for. */
+static cf_status add_derived(cf_sim *sim, const char *name) {
+  cf_derived field;
+  if (sim->model->derived == NULL || cf_registry_find(&sim->shown, name) != NULL) return CF_OK;
+  for (int i = 0; sim->model->derived(sim->state, i, &field); ++i) {
+    if (strcmp(field.name, name) != 0) continue;
+    cf_cell values;
+    CF_TRY(cf_cell_create(&values, &sim->grid.box));
+    const cf_status s = cf_registry_add_cell(&sim->shown, name, field.unit, values);
+    if (s != CF_OK) cf_cell_destroy(&values, &sim->grid.box);
+    return s;
+  }
+  return CF_OK;
+}
+
+static cf_status make_shown(cf_sim *sim) {
+  const cf_scene_output *output = &sim->scene->output;
+  CF_TRY(cf_registry_init(&sim->shown, &sim->grid));
+  CF_TRY(cf_registry_add_all(&sim->shown, &sim->registry));
+  for (int i = 0; i < output->fields.count; ++i) CF_TRY(add_derived(sim, output->fields.item[i]));
+  return add_derived(sim, output->preview.field);
+}
+
+cf_status cf_sim_show(cf_sim *sim) {
+  cf_derived field;
+  for (int i = 0; sim->model->derived != NULL && sim->model->derived(sim->state, i, &field); ++i) {
+    const cf_entry *e = cf_registry_find(&sim->shown, field.name);
+    if (e != NULL) CF_TRY(sim->model->derive(sim->state, i, e->cell));
+  }
+  return CF_OK;
+}
+
+static void destroy_shown(cf_sim *sim) {
+  for (int e = sim->registry.count; e < sim->shown.count; ++e)
+    cf_cell_destroy(&sim->shown.entry[e].cell, &sim->grid.box);
+  cf_registry_clear(&sim->shown);
+}
+
+/* --- creation --------------------------------------------------------------------------------------------- */
+
 static cf_status create(cf_sim *sim, const int threads) {
   const cf_scene *scene = sim->scene;
   int cells[3] = {1, 1, 1};
@@ -28,7 +70,8 @@ static cf_status create(cf_sim *sim, const int threads) {
   sim->grid.threads = threads;
   CF_TRY(cf_registry_init(&sim->registry, &sim->grid));
   CF_TRY(register_clock(sim));
-  return sim->model->create(&sim->state, scene, &sim->registry);
+  CF_TRY(sim->model->create(&sim->state, scene, &sim->registry));
+  return make_shown(sim);
 }
 
 cf_status cf_sim_create(cf_sim **sim, const cf_scene *scene, const int threads) {
@@ -51,6 +94,7 @@ cf_status cf_sim_create(cf_sim **sim, const cf_scene *scene, const int threads) 
 void cf_sim_destroy(cf_sim *sim) {
   if (sim == NULL) return;
   sim->model->destroy(sim->state);
+  destroy_shown(sim);
   cf_registry_clear(&sim->registry);
   cf_free(sim);
 }
@@ -83,16 +127,21 @@ int64_t cf_sim_step_count(const cf_sim *sim) { return sim->step; }
 /* --- a step -----------------------------------------------------------------------------------------------
  */
 
+static cf_status check_values(const cf_sim *sim, const char *name, const cf_real *values) {
+  int where[3];
+  if (cf_sweep_finite(&sim->grid.box, sim->grid.threads, values, where)) return CF_OK;
+  return cf_fail(CF_NOT_FINITE,
+                 "%s stopped being finite in cell (%d, %d, %d) in step %lld at t = %g s (dt = %g s): "
+                 "try a smaller dt, or look at the sources and expressions there",
+                 name, where[0], where[1], where[2], (long long)sim->step, sim->time, sim->dt);
+}
+
 static cf_status check_finite(const cf_sim *sim) {
   for (int e = 0; e < sim->registry.count; ++e) {
     const cf_entry *entry = &sim->registry.entry[e];
-    int where[3];
-    if (entry->kind != CF_KIND_CELL) continue;
-    if (!cf_sweep_finite(&sim->grid.box, sim->grid.threads, entry->cell.at, where))
-      return cf_fail(CF_NOT_FINITE,
-                     "%s stopped being finite in cell (%d, %d, %d) in step %lld at t = %g s (dt = %g s): "
-                     "try a smaller dt, or look at the sources and expressions there",
-                     entry->name, where[0], where[1], where[2], (long long)sim->step, sim->time, sim->dt);
+    if (entry->kind == CF_KIND_CELL) CF_TRY(check_values(sim, entry->name, entry->cell.at));
+    for (int a = 0; entry->kind == CF_KIND_FACE && a < sim->grid.box.dim; ++a)
+      CF_TRY(check_values(sim, entry->name, entry->face.at[a]));
   }
   return CF_OK;
 }

@@ -23,11 +23,17 @@ struct cf_sim {
   int64_t step;    /* steps taken */
   int64_t frame;   /* frames reached; frame 0 is the start */
 
+  cf_registry
+      shown; /* what a frame may show: the state, and after cf_sim_show the derived fields asked for */
   cf_step_report report; /* of the latest step */
   char warning[512];     /* of the latest step: the model's, or that the solver stalled; "" */
 };
 
 /* After cf_checkpoint_read into sim->registry. */
 cf_status cf_sim_restored(cf_sim *sim);
+
+/* The values of the derived fields among output.fields and output.preview.field, as the state is now, in
+ * sim->shown. */
+cf_status cf_sim_show(cf_sim *sim);
 
 #endif

@@ -13,6 +13,7 @@
  * The flow does not know of the scalars: for that there is another model.
  */
 #include <stdio.h>
+#include <string.h>
 
 #include "grid/sweep.h"
 #include "model/tracer_part.h"
@@ -64,19 +65,21 @@ static cf_status diffuse(cf_tracer_scalar *s, const double t, const double dt, c
     CF_TRY(cf_diffuse_step(s->diffuse, t, dt, s->phi, s->q, &s->ledger, &one));
     cf_sources_hold_flux(s->sources, t + dt, s->q);
   }
-  report->solve.iterations += one.iterations;
-  report->solve.levels = one.levels;
-  report->solve.residual = CF_MAX(report->solve.residual, one.residual);
-  report->solve.converged = report->solve.converged && one.converged;
+  cf_step_report_add(report, CF_STAGE_DIFFUSE, &one);
   return CF_OK;
 }
 
 static cf_status tracer_step(void *model, const double t, const double dt, cf_step_report *report) {
   cf_tracer *m = model;
+  double clock = cf_stage_clock();
   CF_TRY(move(m, true, t, dt, t, report));
   CF_TRY(move(m, false, t, dt / 2, t + dt / 4, report));
+  clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
   for (int i = 0; i < m->count; ++i) CF_TRY(diffuse(&m->scalar[i], t, dt, report));
-  return move(m, false, t + dt / 2, dt / 2, t + 3 * dt / 4, report);
+  clock = cf_stage_end(report, CF_STAGE_DIFFUSE, clock);
+  CF_TRY(move(m, false, t + dt / 2, dt / 2, t + 3 * dt / 4, report));
+  cf_stage_end(report, CF_STAGE_ADVECT, clock);
+  return CF_OK;
 }
 
 /* The velocity has been read back as the last step had it: the length of the next one may hang on that. */
@@ -121,9 +124,18 @@ static void tracer_metrics(const void *model, double *values) {
   }
 }
 
+static const char *const tracer_keys[] = {"diffusion", "advection", "fields", "velocity", "sources", NULL};
+
+static bool tracer_shows(const cf_scene *scene, const char *name) {
+  return scene->given.velocity && strcmp(name, "velocity") == 0;
+}
+
 const cf_model cf_model_tracer = {
     .name = "tracer",
     .summary = "scalars with C-F diffusion in a prescribed flow",
+    .keys = tracer_keys,
+    .shows = tracer_shows,
+    .memory = cf_tracer_memory,
     .create = cf_tracer_create,
     .destroy = cf_tracer_destroy,
     .restored = tracer_restored,

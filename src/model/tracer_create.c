@@ -83,6 +83,35 @@ static cf_status register_velocity(const cf_tracer *m, cf_registry *r) {
   return cf_registry_add_face(r, "velocity", "m/s", m->u);
 }
 
+/* --- memory ----------------------------------------------------------------------------------------------- */
+
+static bool has_source(const cf_scene *scene, const bool held) {
+  for (int i = 0; i < scene->sources.count; ++i)
+    if (scene->sources.item[i].given.value == held) return true;
+  return false;
+}
+
+double cf_tracer_memory(const cf_scene *scene) {
+  const double dim = scene->dim, coarse = dim == 3 ? 1.0 / 7 : 1.0 / 3;
+  int n[3] = {1, 1, 1};
+  for (int a = 0; a < scene->dim; ++a) n[a] = (int)scene->domain.cells.value[a];
+  cf_box box;
+  if (cf_box_init(&box, scene->dim, n, CF_HALO) != CF_OK) return INFINITY;
+  double fields = 2 * dim + 4; /* the velocity, and advection's scratch */
+  for (int f = 0; f < scene->fields.count; ++f) {
+    const cf_scene_field *field = &scene->fields.item[f];
+    if (cf_scene_name_is_flux(field->name)) continue;
+    const bool varies =
+        !cf_fn_is_constant(&field->diffusion.k.fn) || field->diffusion.capacity.fn.eval != NULL;
+    fields += 1 + dim;            /* phi, q */
+    fields += 2 + 5 + 3 * coarse; /* phi~ and right side; the solver's vectors; coarse levels */
+    if (varies) fields += 2 * dim + 2 + (dim + 1) * coarse;
+    if (has_source(scene, false)) fields += 1 + dim;
+    if (has_source(scene, true)) fields += 3 + (dim + 1) * (1 + coarse);
+  }
+  return fields * (double)box.size * sizeof(cf_real) + 64e6;
+}
+
 /* --- the plan --------------------------------------------------------------------------------------------- */
 
 /* The largest k/C, as far as it can be had: what is wrong with k or C is told when diffusion is made. */

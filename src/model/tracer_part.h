@@ -44,6 +44,7 @@ typedef struct cf_tracer {
 cf_status cf_tracer_create(void **model, const cf_scene *scene, cf_registry *registry);
 void cf_tracer_destroy(void *model);
 double cf_tracer_natural_dt(const void *model, double t);
+double cf_tracer_memory(const cf_scene *scene);
 
 cf_status cf_tracer_set_velocity(cf_tracer *m, double t);
 cf_advect_scheme cf_tracer_advection(const cf_tracer *m, const cf_tracer_scalar *s);

@@ -196,7 +196,14 @@ static cf_status try_model(cf_check *c) {
   return status;
 }
 
+static void row(void *context, const char *name, const char *text) { add(context, name, text); }
+
+static void warn(void *context, const char *sentence) {
+  cf_writing_add(&((cf_check *)context)->warnings, "  %s\n", sentence);
+}
+
 static cf_status write_page(cf_check *c) {
+  const cf_model *model = cf_model_of(c->scene->model);
   cf_writing_add(&c->page, "%s: %s\n\n", cf_scene_path(c->scene),
                  c->scene->title[0] != '\0' ? c->scene->title : "without a title");
   CF_TRY(try_model(c));
@@ -205,17 +212,19 @@ static cf_status write_page(cf_check *c) {
                    "  too large to be tried here: a run may still find something wrong at its start\n");
   add_grid(c);
   add_walls(c, "walls", &c->scene->domain.walls.walls);
-  CF_TRY(add_flow(c));
+  if (cf_model_reads(model, "velocity")) CF_TRY(add_flow(c));
   if (isnan(c->dt)) CF_TRY(guess_dt(c));
   add_time(c);
   add_memory(c);
-  for (int i = 0; i < c->scene->fields.count; ++i)
-    if (!cf_scene_name_is_flux(c->scene->fields.item[i].name)) {
-      CF_TRY(cf_check_scalar(c, i));
-      if (c->scene->fields.item[i].given.walls)
-        add_walls(c, "  walls", &c->scene->fields.item[i].walls.walls);
-    }
-  return CF_OK;
+  for (int i = 0; i < c->scene->fields.count; ++i) {
+    const cf_scene_field *field = &c->scene->fields.item[i];
+    if (cf_scene_name_is_flux(field->name) || (model->diffuses != NULL && !model->diffuses(c->scene, i)))
+      continue;
+    CF_TRY(cf_check_scalar(c, i));
+    if (field->given.walls) add_walls(c, "  walls", &field->walls.walls);
+  }
+  const cf_page page = {.row = row, .warn = warn, .context = c};
+  return model->check != NULL ? model->check(c->scene, c->dt, &page) : CF_OK;
 }
 
 cf_status cf_check_text(const cf_scene *scene, char **text) {

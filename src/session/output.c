@@ -14,15 +14,15 @@
 #include "session/overlay.h"
 
 static const cf_entry *shown_field(const cf_sim *sim) {
-  return cf_registry_find(&sim->registry, sim->scene->output.preview.field);
+  return cf_registry_find(&sim->shown, sim->scene->output.preview.field);
 }
 
 /* "phi, q, velocity": what could have been meant. */
 static void list_fields(const cf_sim *sim, char *text, const size_t size) {
   size_t used = 0;
   text[0] = '\0';
-  for (int e = 0; e < sim->registry.count; ++e) {
-    const cf_entry *entry = &sim->registry.entry[e];
+  for (int e = 0; e < sim->shown.count; ++e) {
+    const cf_entry *entry = &sim->shown.entry[e];
     const bool fits = entry->kind == CF_KIND_CELL || entry->kind == CF_KIND_FACE;
     if (fits && used < size)
       used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", entry->name);
@@ -33,7 +33,7 @@ cf_status cf_output_check(const cf_sim *sim) {
   const cf_scene *scene = sim->scene;
   char known[512], key[64];
   for (int i = 0; i < scene->output.fields.count; ++i) {
-    const cf_entry *e = cf_registry_find(&sim->registry, scene->output.fields.item[i]);
+    const cf_entry *e = cf_registry_find(&sim->shown, scene->output.fields.item[i]);
     if (e != NULL && e->kind != CF_KIND_NUMBER && e->kind != CF_KIND_COUNTER) continue;
     list_fields(sim, known, sizeof known);
     snprintf(key, sizeof key, "output.fields.%d", i);
@@ -110,15 +110,16 @@ static cf_status write_picture(const cf_sim *sim, const char *folder) {
   return s;
 }
 
-cf_status cf_output_frame(const cf_sim *sim, const char *folder) {
+cf_status cf_output_frame(cf_sim *sim, const char *folder) {
   const unsigned formats = sim->scene->output.formats;
   const cf_param_texts *fields = &sim->scene->output.fields;
   const cf_frame_plan plan = {.count = fields->count, .names = fields->item};
   const cf_stamp stamp = {.title = sim->scene->title, .time = sim->time, .step = sim->step};
+  CF_TRY(cf_sim_show(sim));
   if (formats & 1u << CF_SCENE_FORMAT_VTKHDF)
-    CF_TRY(cf_frame_write(folder, sim->frame, &sim->registry, &plan, &stamp));
+    CF_TRY(cf_frame_write(folder, sim->frame, &sim->shown, &plan, &stamp));
   if (formats & 1u << CF_SCENE_FORMAT_NPY)
-    CF_TRY(cf_npy_write(folder, sim->frame, &sim->registry, plan.count, plan.names));
+    CF_TRY(cf_npy_write(folder, sim->frame, &sim->shown, plan.count, plan.names));
   if (formats & 1u << CF_SCENE_FORMAT_PNG) CF_TRY(write_picture(sim, folder));
   return CF_OK;
 }

@@ -12,6 +12,6 @@
 cf_status cf_output_check(const cf_sim *sim);
 
 /* Writes every format of frame sim->frame into the folder. */
-cf_status cf_output_frame(const cf_sim *sim, const char *folder);
+cf_status cf_output_frame(cf_sim *sim, const char *folder);
 
 #endif
