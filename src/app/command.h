@@ -43,6 +43,7 @@ cf_status cf_examples_command(cf_arguments *a);
 cf_status cf_info_command(cf_arguments *a);
 cf_status cf_sweep_command(cf_arguments *a);
 cf_status cf_sheet_command(cf_arguments *a);
+cf_status cf_bench_command(cf_arguments *a);
 cf_status cf_help_command(cf_arguments *a);
 
 /* CF_BAD_USAGE, with the command that may have been meant. */

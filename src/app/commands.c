@@ -76,6 +76,14 @@ const cf_command cf_commands[] = {
      "checksums, equal bits.\n"
      "  " CF_PROGRAM " info out/cone",
      cf_info_command},
+    {"bench", "[NAME]", 0, 1, BIT(JSON) | BIT(CELLS) | BIT(SIGMA) | BIT(THREADS) | BIT(HELP),
+     "time this program on this machine: solver, table2, or both",
+     "solver: linear systems, each solved several times from zero; the median, the residual computed afresh, "
+     "and the share of the memory's measured bandwidth that the least possible traffic would take.\n"
+     "table2: the cost table of the paper, its stages as this program has them.\n"
+     "Other work on the machine shows in the numbers; they are for comparison within one run.\n"
+     "  " CF_PROGRAM " bench solver --n 128,256 --sigma 0.25,16,inf --threads 2 --json",
+     cf_bench_command},
     {"help", "[COMMAND]", 0, 1, BIT(MANUAL) | BIT(HELP), "what the program or one command does", "",
      cf_help_command},
     {.name = NULL},

@@ -133,6 +133,15 @@ static cf_status keep(cf_arguments *a, const int option, const char *value) {
     case CF_OPTION_MEM_LIMIT:
       if (cf_size_read(value, &a->memory) == CF_OK) break;
       return cf_fail(CF_BAD_USAGE, "--mem-limit %s", cf_status_sentence());
+    case CF_OPTION_JSON:
+      a->json = true;
+      break;
+    case CF_OPTION_CELLS:
+      a->cells = value;
+      break;
+    case CF_OPTION_SIGMA:
+      a->sigmas = value;
+      break;
     case CF_OPTION_FORCE:
       a->force = true;
       break;

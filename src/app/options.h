@@ -30,6 +30,9 @@
     "how progress is shown on stderr: auto is one line that is rewritten on a terminal and plain elsewhere; " \
     "json is one object a line")                                                                              \
   O(MEM_LIMIT, "mem-limit", 0, "SIZE", "refuse a run that may need more memory: 512M, 2G (powers of 1024)")   \
+  O(JSON, "json", 0, NULL, "one JSON object a row instead of a table")                                        \
+  O(CELLS, "n", 0, "N,...", "extents instead of the default set: 256 is 256x256x256; others like 1024x1024")  \
+  O(SIGMA, "sigma", 0, "S,...", "values of sigma = beta/(alpha h^2) instead of the default set; inf is Poisson") \
   O(FORCE, "force", 0, NULL, "overwrite what is there")                                                       \
   O(MANUAL, "manual", 0, NULL, "print the manual page, for man(1)")                                           \
   O(HELP, "help", 'h', NULL, "what the command does and takes")
@@ -67,12 +70,13 @@ typedef struct cf_arguments {
   const char **grid;
   int jobs, columns; /* 0: not given */
   const char *field;
-  int threads;   /* 0: not given */
-  double until;  /* s; 0: not given */
-  int64_t steps; /* 0: not given */
-  double memory; /* bytes; 0: not given */
-  bool other;    /* the other precision than this program's is asked for */
-  bool force, manual, help;
+  const char *cells, *sigmas; /* lists as given, or NULL */
+  int threads;                /* 0: not given */
+  double until;               /* s; 0: not given */
+  int64_t steps;              /* 0: not given */
+  double memory;              /* bytes; 0: not given */
+  bool other;                 /* the other precision than this program's is asked for */
+  bool force, json, manual, help;
   cf_progress_kind progress;
   char **argv; /* of the whole program */
   bool told;   /* the command has said itself why it failed */

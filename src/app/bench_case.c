@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE
+#include "app/bench_case.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "base/rng.h"
+#include "grid/sweep.h"
+
+enum { TIMES_MAX = 25, BLOBS = 5 };
+
+const char *const cf_bench_side_name[CF_BENCH_SIDES] = {"mixed", "smooth", "noisy"};
+
+double cf_bench_clock(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int by_value(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+double cf_bench_median(double *v, const int count) {
+  qsort(v, (size_t)count, sizeof *v, by_value);
+  return count % 2 == 1 ? v[count / 2] : (v[count / 2 - 1] + v[count / 2]) / 2;
+}
+
+/* --- the system ------------------------------------------------------------------------------------------- */
+
+static cf_walls walls_of(const cf_bench_case *c) {
+  cf_walls w = {0};
+  for (int a = 0; a < c->dim && c->walls != NULL; ++a)
+    for (int side = 0; side < 2; ++side)
+      w.kind[a][side] = c->walls[a] == 'p'   ? CF_WALL_PERIODIC
+                        : c->walls[a] == 'o' ? CF_WALL_OPEN
+                                             : CF_WALL_INSULATED;
+  return w;
+}
+
+/* Blobs are products of their shapes along the axes: shape[(a * BLOBS + blob) * n_max + i]. */
+static void fill_shapes(const cf_bench_case *c, const int n_max, double *shape) {
+  static const double centre[BLOBS][3] = {
+      {0.3, 0.35, 0.6}, {0.75, 0.2, 0.4}, {0.55, 0.7, 0.3}, {0.2, 0.8, 0.7}, {0.8, 0.6, 0.8}};
+  static const double width[BLOBS] = {0.08, 0.05, 0.06, 0.04, 0.07};
+  for (int a = 0; a < c->dim; ++a)
+    for (int blob = 0; blob < BLOBS; ++blob)
+      for (int i = 0; i < c->n[a]; ++i) {
+        const double d = ((i + 0.5) / c->n[a] - centre[blob][a]) / width[blob];
+        shape[(ptrdiff_t)(a * BLOBS + blob) * n_max + i] = exp(-d * d / 2);
+      }
+}
+
+static void fill_row(const cf_bench_case *c, const double *shape, const int n_max, const int j, const int k,
+                     cf_real *row) {
+  static const double height[BLOBS] = {1, -1.2, 0.9, -0.7, 0.8};
+  const uint64_t first = ((uint64_t)k * (uint64_t)c->n[1] + (uint64_t)j) * (uint64_t)c->n[0];
+  const double noise = c->side == CF_BENCH_NOISY ? 1 : c->side == CF_BENCH_MIXED ? 0.1 : 0;
+  for (int i = 0; i < c->n[0]; ++i) {
+    double v = noise * (2 * cf_random(1, 0, 0, first + (uint64_t)i) - 1);
+    for (int blob = 0; blob < BLOBS && c->side != CF_BENCH_NOISY; ++blob)
+      v += height[blob] * shape[(ptrdiff_t)blob * n_max + i] * shape[(ptrdiff_t)(BLOBS + blob) * n_max + j] *
+           (c->dim == 3 ? shape[(ptrdiff_t)(2 * BLOBS + blob) * n_max + k] : 1);
+    row[i] = (cf_real)v;
+  }
+}
+
+cf_status cf_bench_fill_side(const cf_bench_case *c, const cf_grid *g, const cf_cell b) {
+  const int n_max = CF_MAX(c->n[0], CF_MAX(c->n[1], c->n[2]));
+  double *shape;
+  CF_TRY(CF_NEW(&shape, (ptrdiff_t)3 * BLOBS * n_max));
+  fill_shapes(c, n_max, shape);
+  CF_PARALLEL_ROWS (&g->box, g->threads, r)
+    fill_row(c, shape, n_max, (int)(r % g->box.n[1]), (int)(r / g->box.n[1]), b.at + cf_box_row(&g->box, r));
+  cf_free(shape);
+  return CF_OK;
+}
+
+/* Bytes of memory in use by this process; 0 where there is no telling. */
+static double resident_bytes(void) {
+  FILE *f = fopen("/proc/self/statm", "re");
+  long whole = 0, resident = 0;
+  if (f == NULL) return 0;
+  if (fscanf(f, "%ld %ld", &whole, &resident) != 2) resident = 0;
+  fclose(f);
+  return (double)resident * (double)sysconf(_SC_PAGESIZE);
+}
+
+static cf_status system_make(cf_bench_system *s, const cf_bench_case *c) {
+  CF_TRY(cf_grid_init(&s->grid, c->dim, c->n, 1, NULL));
+  s->grid.threads = c->threads;
+  CF_TRY(cf_cell_create(&s->b, &s->grid.box));
+  CF_TRY(cf_bench_fill_side(c, &s->grid, s->b));
+  s->resident = resident_bytes();
+  CF_TRY(cf_cell_create(&s->x, &s->grid.box));
+  const cf_walls walls = walls_of(c);
+  CF_TRY(cf_helmholtz_create(&s->A, &s->grid, &walls, 0));
+  const bool poisson = isinf(c->sigma);
+  return cf_helmholtz_set(s->A, &(cf_coefficients){.alpha = poisson ? 0 : 1, .beta = poisson ? 1 : c->sigma});
+}
+
+cf_status cf_bench_system_create(cf_bench_system *s, const cf_bench_case *c) {
+  *s = (cf_bench_system){0};
+  const cf_status status = system_make(s, c);
+  if (status != CF_OK) cf_bench_system_destroy(s);
+  return status;
+}
+
+void cf_bench_system_destroy(cf_bench_system *s) {
+  cf_helmholtz_destroy(s->A);
+  cf_cell_destroy(&s->x, &s->grid.box);
+  cf_cell_destroy(&s->b, &s->grid.box);
+  *s = (cf_bench_system){0};
+}
+
+/* --- timing ----------------------------------------------------------------------------------------------- */
+
+cf_status cf_bench_system_solve(const cf_bench_system *s, const double tolerance, cf_solve_report *report,
+                                double *seconds) {
+  const cf_box *box = &s->grid.box;
+  CF_PARALLEL_ROWS (box, s->grid.threads, r)
+    memset(s->x.at + cf_box_row(box, r), 0, (size_t)box->n[0] * sizeof(cf_real));
+  const double begun = cf_bench_clock();
+  CF_TRY(cf_helmholtz_solve(s->A, s->b, &(cf_solve_options){tolerance, 200}, s->x, report));
+  *seconds = cf_bench_clock() - begun;
+  return CF_OK;
+}
+
+/* The first solve, which touches the memory, is not among those timed. */
+static cf_status time_solves(const cf_bench_system *s, const cf_bench_case *c, const int least,
+                             const double enough, cf_bench_result *result) {
+  double seconds[TIMES_MAX], sum = 0, first;
+  CF_TRY(cf_bench_system_solve(s, c->tolerance, &result->report, &first));
+  result->bytes_per_cell = (resident_bytes() - s->resident) / (double)cf_box_cells(&s->grid.box);
+  while (result->times < TIMES_MAX && (result->times < least || sum < enough)) {
+    CF_TRY(cf_bench_system_solve(s, c->tolerance, &result->report, &seconds[result->times]));
+    sum += seconds[result->times++];
+  }
+  result->seconds = cf_bench_median(seconds, result->times);
+  result->residual = cf_helmholtz_residual(s->A, s->x, s->b);
+  return CF_OK;
+}
+
+cf_status cf_bench_case_run(const cf_bench_case *c, const int least, const double seconds,
+                            cf_bench_result *result) {
+  cf_bench_system s;
+  *result = (cf_bench_result){0};
+  CF_TRY(cf_bench_system_create(&s, c));
+  const cf_status status = time_solves(&s, c, least, seconds, result);
+  cf_bench_system_destroy(&s);
+  return status;
+}
+
+double cf_bench_least_bytes(const cf_bench_case *c, const cf_solve_report *report) {
+  const double cells = (double)c->n[0] * c->n[1] * (c->dim == 3 ? c->n[2] : 1);
+  const double x = sizeof(cf_real), r = sizeof(float);
+  return cells * (2 * x + r + report->iterations * 2 * (x + r));
+}
+
+/* --- the memory ------------------------------------------------------------------------------------------- */
+
+static void triad(const ptrdiff_t n, const int threads, const double s, const double *b, const double *c,
+                  double *a) {
+#pragma omp parallel for simd schedule(static) num_threads(threads)
+  for (ptrdiff_t i = 0; i < n; ++i) a[i] = b[i] + s * c[i];
+}
+
+cf_status cf_bench_stream(const int threads, double *bytes_per_second) {
+  const ptrdiff_t n = (ptrdiff_t)1 << 24;
+  void *pages;
+  CF_TRY(cf_pages_reserve(&pages, (size_t)n * 3 * sizeof(double), true));
+  double *a = pages, best = INFINITY;
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (ptrdiff_t i = 0; i < n; ++i)
+    a[i] = a[n + i] = a[2 * n + i] = 1; /* untouched pages cost nothing to read */
+  for (int t = 0; t < 8; ++t) {
+    const double begun = cf_bench_clock();
+    triad(n, threads, 0.5, a + n, a + 2 * n, a);
+    if (t > 0) best = CF_MIN(best, cf_bench_clock() - begun);
+  }
+  cf_pages_release(pages, (size_t)n * 3 * sizeof(double));
+  *bytes_per_second = 3 * sizeof(double) * (double)n / best;
+  return CF_OK;
+}
