@@ -83,6 +83,21 @@ cf_status cf_bench_fill_side(const cf_bench_case *c, const cf_grid *g, const cf_
   return CF_OK;
 }
 
+/* Poisson's equation between walls that hold nothing has a solution only where b has no mean. */
+static bool wants_no_mean(const cf_bench_case *c) {
+  return isinf(c->sigma) && (c->walls == NULL || strchr(c->walls, 'o') == NULL);
+}
+
+static cf_status remove_mean(const cf_grid *g, const cf_cell b) {
+  double *rows;
+  CF_TRY(CF_NEW(&rows, 3 * cf_box_rows(&g->box)));
+  const double mean = cf_sweep_range(&g->box, g->threads, b.at, rows).sum / (double)cf_box_cells(&g->box);
+  cf_free(rows);
+  CF_PARALLEL_ROWS (&g->box, g->threads, r)
+    for (int i = 0; i < g->box.n[0]; ++i) b.at[cf_box_row(&g->box, r) + i] -= (cf_real)mean;
+  return CF_OK;
+}
+
 /* Bytes of memory in use by this process; 0 where there is no telling. */
 static double resident_bytes(void) {
   FILE *f = fopen("/proc/self/statm", "re");
@@ -98,6 +113,7 @@ static cf_status system_make(cf_bench_system *s, const cf_bench_case *c) {
   s->grid.threads = c->threads;
   CF_TRY(cf_cell_create(&s->b, &s->grid.box));
   CF_TRY(cf_bench_fill_side(c, &s->grid, s->b));
+  if (wants_no_mean(c)) CF_TRY(remove_mean(&s->grid, s->b));
   s->resident = resident_bytes();
   CF_TRY(cf_cell_create(&s->x, &s->grid.box));
   const cf_walls walls = walls_of(c);
