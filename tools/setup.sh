@@ -8,7 +8,7 @@
 set -eu
 
 build="gcc g++ make cmake ninja-build pkg-config libfyaml-dev libmuparser-dev libudunits2-dev libhdf5-dev \
-libpng-dev libcmocka-dev"
+libpng-dev libembree-dev libcmocka-dev"
 test="python3 python3-numpy python3-h5py python3-venv"
 
 wanted=""

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT */
+#include "render/studio.h"
+
+#include "base/mem.h"
+#include "base/real.h"
+#include "grid/sweep.h"
+#include "render/rays.h"
+#include "render/surface.h"
+
+enum { TILE = 32, SAMPLES_MOST = 65536, SIDE_MOST = 16384 };
+
+/* --- what stands there ---------------------------------------------------------------------------------------- */
+
+static cf_status add_all(const cf_studio *s, cf_stage *stage) {
+  unsigned object;
+  for (int i = 0; i < s->solids; ++i) {
+    const cf_solid *b = &s->solid[i];
+    CF_TRY(cf_rays_add_mesh(stage->rays, b->vertices, b->at, b->triangles, b->corner, &object));
+    stage->thing[object] = (cf_thing){.solid = b, .material = &b->material};
+  }
+  for (int i = 0; i < s->balls; ++i) {
+    const cf_balls *b = &s->ball[i];
+    CF_TRY(cf_rays_add_balls(stage->rays, b->count, b->at, b->moved, &object));
+    stage->thing[object] = (cf_thing){.balls = b, .material = &b->material};
+  }
+  return cf_rays_ready(stage->rays);
+}
+
+/* --- one ray ------------------------------------------------------------------------------------------------------ */
+
+/* What a clear body does with a ray: reflect it, or bend it. */
+static void pass_on(const cf_point *p, cf_ray *ray, const float chance) {
+  const float n = p->material->index > 0 ? p->material->index : 1, ratio = p->leaving ? n : 1 / n;
+  const float cosine = -cf_vec_dot(ray->along, p->normal), rest = 1 - ratio * ratio * (1 - cosine * cosine);
+  if (rest <= 0 || chance < cf_surface_mirror(p, cosine)) {
+    ray->along = cf_vec_unit(cf_vec_along(ray->along, 2 * cosine, p->normal));
+    ray->from = cf_vec_along(p->at, p->skin, p->flat);
+    return;
+  }
+  const float turn = ratio * cosine - sqrtf(rest);
+  ray->along = cf_vec_unit(cf_vec_along(cf_vec_scale(ratio, ray->along), turn, p->normal));
+  ray->from = cf_vec_along(p->at, -p->skin, p->flat);
+}
+
+static void cross_media(const cf_studio *s, const cf_ray *ray, const float far, cf_dice *dice, cf_vec *light,
+                        cf_vec *through) {
+  for (int i = 0; i < s->media; ++i)
+    cf_medium_march(s->medium[i], ray, 0, far, cf_dice_one(dice), light, through);
+}
+
+static void cross_haze(const cf_haze *haze, const float far, cf_vec *light, cf_vec *through) {
+  if (haze->fade.x <= 0 && haze->fade.y <= 0 && haze->fade.z <= 0) return;
+  const cf_vec kept = cf_vec_fade(cf_vec_scale(far, haze->fade));
+  const cf_vec lost = {1 - kept.x, 1 - kept.y, 1 - kept.z};
+  *light = cf_vec_add(*light, cf_vec_times(*through, cf_vec_times(lost, haze->colour)));
+  *through = cf_vec_times(*through, kept);
+}
+
+enum { TURNS = 12 };
+
+/* `behind` is what the ray sees if nothing is in its way; *distance how far it came before it met something. */
+static cf_vec see(const cf_stage *stage, cf_ray ray, const cf_vec behind, cf_dice *dice, float *distance) {
+  const cf_studio *s = stage->studio;
+  cf_vec light = {0, 0, 0}, through = {1, 1, 1};
+  *distance = INFINITY;
+  for (int turn = 0; turn < TURNS; ++turn) {
+    cf_hit hit;
+    cf_point p;
+    const bool met = cf_rays_hit(stage->rays, &ray, 0, INFINITY, &hit);
+    cross_media(s, &ray, met ? hit.distance : INFINITY, dice, &light, &through);
+    if (!met) {
+      const cf_vec seen = turn == 0 ? behind : cf_surface_around(stage, ray.along);
+      return cf_vec_add(light, cf_vec_times(through, seen));
+    }
+    if (turn == 0) *distance = hit.distance;
+    cf_surface_meet(stage, &ray, &hit, &p);
+    if (p.leaving)
+      through = cf_vec_times(through, cf_vec_fade(cf_vec_scale(hit.distance, p.material->absorb)));
+    else
+      cross_haze(&s->haze, hit.distance, &light, &through);
+    float chance[2];
+    cf_dice_pair(dice, chance);
+    if (chance[0] >= p.material->clear)
+      return cf_vec_add(light, cf_vec_times(through, cf_surface_light(stage, &ray, &p, dice)));
+    pass_on(&p, &ray, chance[1]);
+  }
+  return light;
+}
+
+/* --- all rays ------------------------------------------------------------------------------------------------------- */
+
+/* A number in [0, 1) as one in -1 .. 1 with the density of a tent: neighbouring pixels share what lies between. */
+static float tent(const float s) { return s < 0.5f ? sqrtf(2 * s) - 1 : 1 - sqrtf(2 - 2 * s); }
+
+static void expose_pixel(const cf_stage *stage, const cf_lens *lens, const int x, const int y, cf_film *f) {
+  const cf_studio *s = stage->studio;
+  const size_t p = (size_t)y * (size_t)f->width + (size_t)x;
+  const float wide = (float)s->width, tall = (float)s->height;
+  cf_vec sum = {0, 0, 0};
+  f->distance[p] = INFINITY;
+  for (int i = 0; i < s->samples; ++i) {
+    cf_dice dice = {.pixel = cf_random_mix(s->seed) ^ p, .sample = (uint32_t)i};
+    float at[2], disc[2], distance;
+    cf_dice_pair(&dice, at);
+    const float px = (float)x + 0.5f + tent(at[0]), py = (float)y + 0.5f + tent(at[1]);
+    cf_dice_pair(&dice, at);
+    cf_sample_disc(at, disc);
+    cf_ray ray = cf_lens_ray(lens, px, py, disc);
+    ray.time = cf_dice_one(&dice);
+    const cf_vec behind = cf_backdrop_at(&s->backdrop, px / wide, py / tall, wide / tall);
+    sum = cf_vec_add(sum, see(stage, ray, behind, &dice, &distance));
+    f->distance[p] = fminf(f->distance[p], distance * cf_vec_dot(ray.along, lens->forward));
+  }
+  f->light[p] = cf_vec_scale(1 / (float)s->samples, sum);
+}
+
+static void expose_all(const cf_stage *stage, const cf_lens *lens, cf_film *f) {
+  const int across = (f->width + TILE - 1) / TILE, tiles = across * ((f->height + TILE - 1) / TILE);
+  CF_PRAGMA(omp parallel for schedule(dynamic) num_threads(CF_MAX(stage->studio->threads, 1)))
+  for (int t = 0; t < tiles; ++t) {
+    const int x0 = t % across * TILE, y0 = t / across * TILE;
+    for (int y = y0; y < CF_MIN(y0 + TILE, f->height); ++y)
+      for (int x = x0; x < CF_MIN(x0 + TILE, f->width); ++x) expose_pixel(stage, lens, x, y, f);
+  }
+}
+
+static cf_status check(const cf_studio *s) {
+  if (s->width < 1 || s->height < 1 || s->width > SIDE_MOST || s->height > SIDE_MOST)
+    return cf_fail(CF_BAD_ARGUMENT, "a picture of %d x %d pixels: sides must be 1 to %d", s->width, s->height,
+                   SIDE_MOST);
+  if (s->samples < 1 || s->samples > SAMPLES_MOST)
+    return cf_fail(CF_BAD_ARGUMENT, "%d samples a pixel: must be 1 to %d", s->samples, SAMPLES_MOST);
+  return CF_OK;
+}
+
+cf_status cf_studio_expose(const cf_studio *s, cf_film *f) {
+  cf_stage stage = {.studio = s};
+  cf_lens lens;
+  *f = (cf_film){.light = NULL};
+  CF_TRY(check(s));
+  CF_TRY(cf_lens_grind(&lens, &s->camera, s->width, s->height));
+  CF_TRY(cf_rays_create(&stage.rays));
+  cf_status status = add_all(s, &stage);
+  if (status == CF_OK) status = cf_film_create(f, s->width, s->height);
+  if (status == CF_OK) expose_all(&stage, &lens, f);
+  cf_rays_destroy(stage.rays);
+  return status;
+}
