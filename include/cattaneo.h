@@ -542,6 +542,47 @@ cf_status cf_advect_face(cf_advect *a, const cf_walls *walls, cf_flux_rate rate,
  * digits whatever n, alpha and beta are. Any extents will do, also odd and long ones.
  * ===================================================================================================== */
 
+/* --- which cells -------------------------------------------------------------------------------------------- *
+ *
+ * The equation may hold in a part of the box only. Every cell then has a kind, and between a cell inside and one of
+ * another kind holds what holds on a wall of the box:
+ *   wall     the face is closed, as on an insulated wall
+ *   inside   the equation's own
+ *   held     the value of that cell is known on the face
+ *   outside  the value on the face is 0, as on an open wall
+ *
+ *     cf_region *region;
+ *     cf_region_create(&region, &grid);                        // all inside
+ *     cf_region_kinds(region)[p] = CF_CELL_WALL;               // p as in a cf_cell
+ *     cf_region_update(region);                                // whenever kinds have changed
+ *     cf_helmholtz_set(A, &(cf_coefficients){.alpha = 1, .beta = dt*k, .region = region});
+ */
+
+#define CF_CELL_KIND_LIST(K) K(WALL, wall) K(INSIDE, inside) K(HELD, held) K(OUTSIDE, outside)
+
+typedef enum cf_cell_kind {
+#define CF_CELL_KIND_ENUM(upper, lower) CF_CELL_##upper,
+  CF_CELL_KIND_LIST(CF_CELL_KIND_ENUM)
+#undef CF_CELL_KIND_ENUM
+} cf_cell_kind;
+
+typedef struct cf_region cf_region;
+
+/* Every cell inside. CF_NO_MEMORY. */
+cf_status cf_region_create(cf_region **r, const cf_grid *g);
+void cf_region_destroy(cf_region *r);
+
+/* The kinds, a byte a cell, in the layout of a cf_cell (ghosts are not read); and the values of held cells. Both are
+ * yours to write. */
+unsigned char *cf_region_kinds(cf_region *r);
+cf_cell cf_region_values(cf_region *r);
+
+/* Takes what was written. CF_BAD_ARGUMENT: a byte that is no kind. */
+cf_status cf_region_update(cf_region *r);
+
+/* The number of cells inside. */
+ptrdiff_t cf_region_inside(const cf_region *r);
+
 /* The operator, with the multigrid hierarchy that solves it. */
 typedef struct cf_helmholtz cf_helmholtz;
 
@@ -549,6 +590,7 @@ typedef struct cf_coefficients {
   double alpha, beta;      /* used where the fields below are NULL; beta in m^2 (times alpha's unit) */
   const cf_cell *alpha_at; /* fields on the grid's box, owned by the caller, alive while solving */
   const cf_face *beta_at;
+  const cf_region *region; /* NULL: the whole box; otherwise on the same grid, alive while solving */
 } cf_coefficients;
 
 /* levels: 0 for as many as the equation needs, otherwise at most that many (1: no coarse grids). Of `walls` only
@@ -591,6 +633,8 @@ double cf_helmholtz_residual(cf_helmholtz *A, cf_cell x, cf_cell b);
   F(diffuse_k_max) F(diffuse_speed_max) F(ledger_error) F(ledger_add)                                   \
   F(advect_create) F(advect_destroy) F(advect_set_velocity) F(advect_rate) F(advect_substeps)           \
   F(advect_begin) F(advect_parity) F(advect_cell) F(advect_face)                                        \
+  F(region_create) F(region_destroy) F(region_kinds) F(region_values) F(region_update)                  \
+  F(region_inside)                                                                                      \
   F(helmholtz_create) F(helmholtz_destroy) F(helmholtz_set) F(helmholtz_solve)                          \
   F(helmholtz_apply) F(helmholtz_residual)
 /* clang-format on */

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: MIT */
+#include "grid/region.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "grid/sweep.h"
+
+cf_status cf_region_create(cf_region **r, const cf_grid *g) { return cf_region_create_on(r, g, NULL); }
+
+cf_status cf_region_create_on(cf_region **region, const cf_grid *g, const cf_tiles *tiles) {
+  *region = NULL;
+  cf_region *r;
+  void *pages = NULL;
+  CF_TRY(CF_NEW(&r, 1));
+  r->grid = *g;
+  r->tiles = tiles;
+  cf_status s = cf_pages_reserve(&pages, (size_t)g->box.size, tiles == NULL);
+  if (s == CF_OK) {
+    r->kind = (unsigned char *)pages + g->box.first;
+    s = tiles != NULL ? cf_tiles_cell_create(tiles, &r->value) : cf_cell_create(&r->value, &g->box);
+  }
+  if (s != CF_OK) {
+    cf_region_destroy(r);
+    return s;
+  }
+  if (tiles == NULL) cf_region_fill(r, CF_CELL_INSIDE);
+  *region = r;
+  return cf_region_update(r);
+}
+
+void cf_region_destroy(cf_region *r) {
+  if (r == NULL) return;
+  const cf_box *b = &r->grid.box;
+  if (r->kind != NULL) cf_pages_release(r->kind - b->first, (size_t)b->size);
+  cf_cell_destroy(&r->value, b);
+  cf_free(r);
+}
+
+unsigned char *cf_region_kinds(cf_region *r) { return r->kind; }
+
+cf_cell cf_region_values(cf_region *r) { return r->value; }
+
+ptrdiff_t cf_region_inside(const cf_region *r) { return r->inside; }
+
+/* --- writing ------------------------------------------------------------------------------------------ */
+
+/* What is done to cells [low, high) of row (j, k). */
+typedef struct row_of_cells {
+  cf_region *region;
+  int low, high, j, k;
+} row_of_cells;
+
+typedef void row_action(const row_of_cells *row, void *context);
+
+/* All rows of a window of cells, or what of it is in active tiles; one after the other. */
+static void for_rows(cf_region *r, const int low[3], const int high[3], row_action *act, void *context) {
+  if (r->tiles == NULL) {
+    for (int k = low[2]; k < high[2]; ++k)
+      for (int j = low[1]; j < high[1]; ++j) act(&(row_of_cells){r, low[0], high[0], j, k}, context);
+    return;
+  }
+  const cf_tiles *t = r->tiles;
+  for (ptrdiff_t v = 0; v < t->rows; ++v) CF_TILE_ROWS(t, v, j, k) {
+      if (j < low[1] || j >= high[1] || k < low[2] || k >= high[2]) continue;
+      CF_TILE_RUNS(t, v, run) {
+        const int from = CF_MAX(run->low, low[0]), to = CF_MIN(run->high, high[0]);
+        if (from < to) act(&(row_of_cells){r, from, to, j, k}, context);
+      }
+    }
+}
+
+static void for_all_rows(cf_region *r, row_action *act, void *context) {
+  for_rows(r, (int[]){0, 0, 0}, r->grid.box.n, act, context);
+}
+
+static void fill_row(const row_of_cells *w, void *kind) {
+  unsigned char *row = w->region->kind + cf_box_at(&w->region->grid.box, 0, w->j, w->k);
+  memset(row + w->low, *(const int *)kind, (size_t)(w->high - w->low));
+}
+
+void cf_region_fill(cf_region *r, const cf_cell_kind kind) {
+  int byte = (int)kind;
+  for_all_rows(r, fill_row, &byte);
+}
+
+typedef struct adding {
+  const cf_shape *shape;
+  const cf_pose *pose;
+  double t;
+  cf_cell_kind kind;
+  const cf_fn *value;
+  double *x, *y, *z, *out;
+} adding;
+
+static void add_row(const row_of_cells *w, void *context) {
+  const adding *c = context;
+  const cf_region *r = w->region;
+  const cf_grid *g = &r->grid;
+  const int n = w->high - w->low;
+  const ptrdiff_t at = cf_box_at(&g->box, w->low, w->j, w->k);
+  for (int i = 0; i < n; ++i) {
+    c->x[i] = cf_grid_place(g, 0, w->low + i, 0);
+    c->y[i] = cf_grid_place(g, 1, w->j, 0);
+    c->z[i] = g->box.dim == 3 ? cf_grid_place(g, 2, w->k, 0) : 0;
+  }
+  cf_shape_distance_row(c->shape, c->pose, c->t, n, c->x, c->y, c->z, c->out);
+  bool any = false;
+  for (int i = 0; i < n; ++i) {
+    if (!(c->out[i] <= 0)) continue;
+    r->kind[at + i] = (unsigned char)c->kind;
+    any = true;
+  }
+  if (!any || c->kind != CF_CELL_HELD) return;
+  for (int i = 0; i < n; ++i)
+    if (c->out[i] <= 0)
+      r->value.at[at + i] =
+          c->value != NULL ? (cf_real)cf_fn_at(c->value, c->x[i], c->y[i], c->z[i], c->t) : 0;
+}
+
+cf_status cf_region_add(cf_region *r, const cf_shape *s, const cf_pose *pose, const double t,
+                        const cf_cell_kind kind, const cf_fn *value) {
+  const ptrdiff_t n = r->grid.box.n[0];
+  int low[3], high[3];
+  double *x;
+  CF_TRY(CF_NEW(&x, 4 * n));
+  cf_shape_cells(s, pose, &r->grid, 0, low, high);
+  adding c = {s, pose, t, kind, value, x, x + n, x + 2 * n, x + 3 * n};
+  for_rows(r, low, high, add_row, &c);
+  cf_free(x);
+  return CF_OK;
+}
+
+void cf_region_retire(cf_region *r) {
+  if (r->tiles == NULL) return;
+  cf_tiles_retire_bytes(r->tiles, r->kind, 1);
+  cf_tiles_retire_cell(r->tiles, r->value);
+}
+
+/* --- taking what was written -------------------------------------------------------------------------- */
+
+typedef struct taking {
+  ptrdiff_t inside;
+  bool bad;
+  int where[3], byte;
+} taking;
+
+static void take_row(const row_of_cells *w, void *context) {
+  taking *c = context;
+  const cf_region *r = w->region;
+  const unsigned char *kind = r->kind + cf_box_at(&r->grid.box, 0, w->j, w->k);
+  for (int i = w->low; i < w->high; ++i) {
+    if (kind[i] > CF_CELL_OUTSIDE && !c->bad) {
+      *c = (taking){.bad = true, .where = {i, w->j, w->k}, .byte = kind[i]};
+      return;
+    }
+    c->inside += kind[i] == CF_CELL_INSIDE;
+  }
+}
+
+cf_status cf_region_update(cf_region *r) {
+  taking c = {0};
+  for_all_rows(r, take_row, &c);
+  if (c.bad)
+    return cf_fail(CF_BAD_ARGUMENT, "cell (%d, %d, %d) has kind %d: must be 0 (wall) to 3 (outside)",
+                   c.where[0], c.where[1], c.where[2], c.byte);
+  r->inside = c.inside;
+  return CF_OK;
+}
