@@ -40,48 +40,21 @@ static cf_status write_scene(cf_hdf5 *h, const char *scene) {
   return cf_hdf5_write(h, "/scene", &text, scene, NULL);
 }
 
-static cf_status write_faces(cf_hdf5 *h, const cf_registry *r, const cf_entry *e, cf_head *head) {
-  const cf_box *b = &r->grid->box;
-  cf_path path;
-  CF_TRY(cf_path_make(&path, "/state/%s", e->name));
-  CF_TRY(cf_hdf5_group(h, path.text));
-  for (int a = 0; a < b->dim; ++a) {
-    const cf_slabs s = cf_slabs_of_face(b, &e->face, a);
-    cf_extent extent;
-    CF_TRY(cf_path_make(&path, "/state/%s/%c", e->name, "xyz"[a]));
-    CF_TRY(cf_hdf5_write_slabs(h, path.text, &s, 0, &extent));
-    cf_head_add(head, path.text + strlen("/state/"), &extent);
-  }
-  return CF_OK;
-}
-
-static cf_status write_array(cf_hdf5 *h, const cf_registry *r, const cf_entry *e, const char *path,
-                             cf_extent *extent) {
-  if (e->kind == CF_KIND_CELL) {
-    const cf_slabs s = cf_slabs_of_cell(&r->grid->box, e->cell);
-    return cf_hdf5_write_slabs(h, path, &s, 0, extent);
-  }
-  if (e->kind == CF_KIND_PARTICLE) {
-    const cf_array a = {CF_ELEMENT_REAL, 2, {*e->count, e->components}};
-    return cf_hdf5_write(h, path, &a, *e->particles, extent);
-  }
-  const bool counter = e->kind == CF_KIND_COUNTER;
-  const cf_array a = {counter ? CF_ELEMENT_INTEGER : CF_ELEMENT_NUMBER, 1, {e->components}};
-  return cf_hdf5_write(h, path, &a, counter ? (const void *)e->counter : e->number, extent);
-}
-
+/* Entries of several parts are a group. */
 static cf_status write_entry(cf_hdf5 *h, const cf_registry *r, const cf_entry *e, cf_head *head) {
   cf_path path;
-  cf_extent extent;
+  cf_part part;
   CF_TRY(cf_path_make(&path, "/state/%s", e->name));
-  if (e->kind == CF_KIND_FACE) {
-    CF_TRY(write_faces(h, r, e, head));
-  } else {
-    CF_TRY(write_array(h, r, e, path.text, &extent));
-    cf_head_add(head, e->name, &extent);
+  if (e->kind == CF_KIND_FACE || e->kind == CF_KIND_PARTICLES) CF_TRY(cf_hdf5_group(h, path.text));
+  for (int i = 0; cf_part_of(r, e, i, &part); ++i) {
+    cf_extent extent;
+    if (part.derived) continue;
+    CF_TRY(cf_path_make(&path, "/state/%s", part.name));
+    CF_TRY(cf_hdf5_write_part(h, path.text, &part, 0, &extent));
+    cf_head_add(head, part.name, &extent);
   }
-  CF_TRY(cf_hdf5_set_text(h, path.text, "kind", cf_kind_name(e->kind)));
-  return cf_hdf5_set_text(h, path.text, "unit", e->unit);
+  CF_TRY(cf_path_make(&path, "/state/%s", e->name));
+  return cf_hdf5_set_text(h, path.text, "kind", cf_kind_name(e->kind));
 }
 
 static cf_status fill(cf_hdf5 *h, const cf_registry *r, const cf_stamp *stamp, cf_head *head) {
@@ -129,9 +102,11 @@ static cf_status prune(const char *folder, const int64_t step, const int keep) {
 
 cf_status cf_checkpoint_write_to(const char *path, const cf_registry *r, const cf_stamp *stamp) {
   cf_head head;
+  cf_part part;
   int arrays = 0;
   CF_TRY(check_names(r));
-  for (int e = 0; e < r->count; ++e) arrays += r->entry[e].kind == CF_KIND_FACE ? r->grid->box.dim : 1;
+  for (int e = 0; e < r->count; ++e)
+    for (int i = 0; cf_part_of(r, &r->entry[e], i, &part); ++i) ++arrays;
   CF_TRY(cf_head_create(&head, arrays));
   const cf_status s = write_file(path, r, stamp, &head);
   cf_head_destroy(&head);

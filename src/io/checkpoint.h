@@ -3,8 +3,7 @@
  * Checkpoints: all of the registry in one file, checkpoint_000100.h5 for step 100, such that a run that goes
  * on from it has the same bits as one that never stopped.
  *
- * The file is HDF5: /state/NAME (a cell field, numbers, a counter, a particle array) or /state/NAME/x, /y, /z
- * (a face field, high faces included), and /scene, the resolved scene. Before the HDF5 part stands a page of
+ * The file is HDF5: below /state what io/parts.h lists, and /scene, the resolved scene. Before the HDF5 part stands a page of
  * text (HDF5 calls it a user block) with the format's version, the length and checksum of all that follows,
  * and place and checksum of every array. A reader checks it before it lets the HDF5 library see the file: a
  * damaged file is told from a whole one by plain arithmetic, and it can say which array is damaged.
@@ -28,17 +27,9 @@ cf_status cf_checkpoint_write(const char *folder, const cf_registry *r, const cf
 /* The same into a file of any name, and nothing is removed. */
 cf_status cf_checkpoint_write_to(const char *path, const cf_registry *r, const cf_stamp *stamp);
 
-/* Particle arrays belong to the model: it makes room for `count` particles in the set of `entry` and sets its
- * count. */
-typedef struct cf_checkpoint_room {
-  cf_status (*make)(void *context, const cf_entry *entry, int64_t count);
-  void *context;
-} cf_checkpoint_room;
-
-/* Reads everything into the registry. `room` may be NULL if there are no particles or their number is right.
- * CF_BAD_FILE: the file is damaged, or does not fit (precision, shape, an entry missing or unknown), and says
+/* Reads everything into the registry; sets of particles get room for as many as there are. CF_BAD_FILE: the file is damaged, or does not fit (precision, shape, an entry missing or unknown), and says
  * what was expected and what was found; the state is as it was. */
-cf_status cf_checkpoint_read(const char *path, const cf_registry *r, const cf_checkpoint_room *room);
+cf_status cf_checkpoint_read(const char *path, const cf_registry *r, const void *nothing);
 
 /* Whether the file is whole. CF_BAD_FILE with a sentence that says what is wrong. */
 cf_status cf_checkpoint_check(const char *path);

@@ -14,7 +14,7 @@
 #include "io/checkpoint.h"
 #include "io/checksum.h"
 
-#define LINE_ROOM   160 /* a line about an array */
+#define LINE_ROOM   224 /* a line about an array */
 #define FIXED_ROOM  256 /* the other lines */
 #define HEAD_LEAST  512
 #define HEAD_MOST   ((size_t)1 << 24)
@@ -106,7 +106,7 @@ static void print_page(const cf_head *head, const uint64_t bytes, const uint64_t
     at += sprintf(at, "array %s %" PRIu64 " %" PRIu64 " %016" PRIx64 "\n", a->name, a->extent.offset,
                   a->extent.bytes, a->extent.checksum);
   }
-  sprintf(at, "end %016" PRIx64 "\n", cf_checksum_of(page, (size_t)(at - page)));
+  sprintf(at, "end %016" PRIx64 "\n", cf_checksum_of(page, (size_t)(at - page), 1));
 }
 
 static cf_status write_page(const source *s, const cf_head *head) {
@@ -167,7 +167,7 @@ static bool is_whole_page(const char *page, const size_t size) {
   uint64_t sum;
   int used = 0;
   if (end == NULL || sscanf(end + 1, "end %16" SCNx64 "%n", &sum, &used) != 1 || used != 20) return false;
-  if (sum != cf_checksum_of(page, (size_t)(end + 1 - page)) || end[21] != '\n') return false;
+  if (sum != cf_checksum_of(page, (size_t)(end + 1 - page), 1) || end[21] != '\n') return false;
   for (size_t i = (size_t)(end + 22 - page); i < size; ++i)
     if (page[i] != 0) return false;
   return true;
@@ -179,7 +179,7 @@ static cf_status find_damage(const source *s, const char *page) {
   for (const char *line = strstr(page, "\narray "); line != NULL; line = strstr(line + 1, "\narray ")) {
     cf_head_array a;
     uint64_t sum;
-    if (sscanf(line, "\narray %65s %" SCNu64 " %" SCNu64 " %16" SCNx64, a.name, &a.extent.offset,
+    if (sscanf(line, "\narray %127s %" SCNu64 " %" SCNu64 " %16" SCNx64, a.name, &a.extent.offset,
                &a.extent.bytes, &a.extent.checksum) != 4)
       break;
     if (a.extent.offset > s->size || a.extent.bytes > s->size - a.extent.offset) continue;

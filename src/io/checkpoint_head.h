@@ -21,7 +21,7 @@
 #include "io/hdf5.h"
 
 typedef struct cf_head_array {
-  char name[CF_NAME_MAX + 2];
+  char name[2 * CF_NAME_MAX];
   cf_extent extent;
 } cf_head_array;
 
@@ -42,8 +42,5 @@ cf_status cf_head_write(const cf_head *head, const char *path, const char *name)
 /* Whether every byte of the file is what was written. CF_BAD_FILE with what is wrong: no checkpoint, a format
  * of another program, cut short, which array is damaged. */
 cf_status cf_head_check(const char *path);
-
-/* "cell", "face" ... as the attribute `kind` has it. */
-const char *cf_kind_name(cf_kind kind);
 
 #endif

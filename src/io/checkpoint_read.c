@@ -13,11 +13,6 @@
 
 #define SCENE_BYTES ((int64_t)64 << 20)
 
-const char *cf_kind_name(const cf_kind kind) {
-  static const char *const names[] = {"cell", "face", "particle", "number", "counter"};
-  return names[kind];
-}
-
 /* --- facts
  * -------------------------------------------------------------------------------------------------- */
 
@@ -90,31 +85,62 @@ static cf_status fit_facts(cf_hdf5 *h, const cf_registry *r) {
   return CF_OK;
 }
 
-static cf_status fit_array(cf_hdf5 *h, const char *path, const cf_array *wanted) {
+static cf_status read_count(cf_hdf5 *h, const cf_entry *e, int64_t *count) {
+  cf_path path;
   cf_array found;
-  CF_TRY(cf_hdf5_shape(h, path, &found));
-  bool same = found.rank == wanted->rank && found.element == wanted->element;
-  for (int d = 0; d < wanted->rank; ++d) same = same && (found.n[d] == wanted->n[d] || wanted->n[d] < 0);
-  if (same) return CF_OK;
-  return cf_fail(CF_BAD_FILE,
-                 "%s: %s has another shape: expected %" PRId64 " x %" PRId64 " x %" PRId64 ", found %" PRId64
-                 " x %" PRId64 " x %" PRId64,
-                 h->draft.path.text, path, wanted->n[0], wanted->n[1], wanted->n[2], found.n[0], found.n[1],
-                 found.n[2]);
+  CF_TRY(cf_path_make(&path, "/state/%s/id", e->name));
+  CF_TRY(cf_hdf5_shape(h, path.text, &found));
+  *count = found.n[0];
+  return CF_OK;
+}
+
+static void shape_text(const cf_array *a, char *text, const size_t size) {
+  size_t used = 0;
+  for (int d = 0; d < a->rank; ++d)
+    used += (size_t)snprintf(text + used, size - used, "%s%" PRId64, d > 0 ? " x " : "", a->n[d]);
 }
 
 /* What a double array is called when cf_real is double too. */
-static cf_element number_element(void) { return sizeof(cf_real) == 8 ? CF_ELEMENT_REAL : CF_ELEMENT_NUMBER; }
+static cf_element element_in_file(const cf_element e) {
+  return e == CF_ELEMENT_NUMBER && sizeof(cf_real) == 8 ? CF_ELEMENT_REAL : e;
+}
 
-static cf_array array_of(const cf_registry *r, const cf_entry *e, const int axis) {
-  const cf_box *b = &r->grid->box;
-  if (e->kind == CF_KIND_NUMBER) return (cf_array){number_element(), 1, {e->components}};
-  if (e->kind == CF_KIND_COUNTER) return (cf_array){CF_ELEMENT_INTEGER, 1, {e->components}};
-  if (e->kind == CF_KIND_PARTICLE) return (cf_array){CF_ELEMENT_REAL, 2, {-1, e->components}};
-  const cf_slabs s = axis < 0 ? cf_slabs_of_cell(b, e->cell) : cf_slabs_of_face(b, &e->face, axis);
-  cf_array a = cf_slabs_array(&s);
-  a.n[3] = 0;
-  return a;
+static cf_status fit_array(cf_hdf5 *h, const char *path, const cf_array *wanted) {
+  cf_array found;
+  CF_TRY(cf_hdf5_shape(h, path, &found));
+  bool same = found.rank == wanted->rank && found.element == element_in_file(wanted->element);
+  for (int d = 0; d < wanted->rank; ++d) same = same && found.n[d] == wanted->n[d];
+  if (same) return CF_OK;
+  char a[96], b[96];
+  shape_text(wanted, a, sizeof a);
+  shape_text(&found, b, sizeof b);
+  return cf_fail(CF_BAD_FILE, "%s: %s has another shape: expected %s, found %s", h->draft.path.text, path, a,
+                 b);
+}
+
+static cf_status visit_attribute(void *context, cf_hdf5 *h, const char *name) {
+  const cf_particles *set = context;
+  if (strcmp(name, "id") == 0 || strcmp(name, "next_id") == 0 || cf_particles_find(set, name) >= 0)
+    return CF_OK;
+  return cf_fail(CF_BAD_FILE, "%s: has \"%s.%s\", which this scene does not know", h->draft.path.text,
+                 set->name, name);
+}
+
+/* Of particles the file says how many there are. */
+static cf_status fit_parts(cf_hdf5 *h, const cf_registry *r, const cf_entry *e) {
+  const bool particles = e->kind == CF_KIND_PARTICLES;
+  int64_t count = 0;
+  cf_part part;
+  cf_path path;
+  if (particles) CF_TRY(read_count(h, e, &count));
+  for (int i = 0; cf_part_of(r, e, i, &part); ++i) {
+    if (part.derived) continue;
+    CF_TRY(cf_path_make(&path, "/state/%s", part.name));
+    if (particles && i != CF_PART_NEXT_ID) part.array.n[0] = count;
+    CF_TRY(fit_array(h, path.text, &part.array));
+  }
+  CF_TRY(cf_path_make(&path, "/state/%s", e->name));
+  return particles ? cf_hdf5_each(h, path.text, visit_attribute, e->particles) : CF_OK;
 }
 
 static cf_status fit_entry(cf_hdf5 *h, const cf_registry *r, const cf_entry *e) {
@@ -128,16 +154,7 @@ static cf_status fit_entry(cf_hdf5 *h, const cf_registry *r, const cf_entry *e) 
   if (strcmp(kind, cf_kind_name(e->kind)) != 0)
     return cf_fail(CF_BAD_FILE, "%s: \"%s\" is of another kind: expected %s, found %s", h->draft.path.text,
                    e->name, cf_kind_name(e->kind), kind);
-  if (e->kind != CF_KIND_FACE) {
-    const cf_array wanted = array_of(r, e, -1);
-    return fit_array(h, path.text, &wanted);
-  }
-  for (int a = 0; a < r->grid->box.dim; ++a) {
-    const cf_array wanted = array_of(r, e, a);
-    CF_TRY(cf_path_make(&path, "/state/%s/%c", e->name, "xyz"[a]));
-    CF_TRY(fit_array(h, path.text, &wanted));
-  }
-  return CF_OK;
+  return fit_parts(h, r, e);
 }
 
 static cf_status visit_known(void *context, cf_hdf5 *h, const char *name) {
@@ -145,96 +162,48 @@ static cf_status visit_known(void *context, cf_hdf5 *h, const char *name) {
   return cf_fail(CF_BAD_FILE, "%s: has \"%s\", which this scene does not know", h->draft.path.text, name);
 }
 
-static cf_status count_particles(cf_hdf5 *h, const cf_entry *e, int64_t *count) {
-  cf_path path;
-  cf_array found;
-  CF_TRY(cf_path_make(&path, "/state/%s", e->name));
-  CF_TRY(cf_hdf5_shape(h, path.text, &found));
-  *count = found.n[0];
-  return CF_OK;
-}
-
-/* Entries that share a count must agree on it; without `room` it must be the present one. */
-static cf_status fit_particles(cf_hdf5 *h, const cf_registry *r, const bool has_room) {
-  for (int i = 0; i < r->count; ++i) {
-    const cf_entry *e = &r->entry[i];
-    int64_t count, other;
-    if (e->kind != CF_KIND_PARTICLE) continue;
-    CF_TRY(count_particles(h, e, &count));
-    if (!has_room && count != *e->count)
-      return cf_fail(CF_BAD_FILE, "%s: %s has %" PRId64 " particles, expected %" PRId64, h->draft.path.text,
-                     e->name, count, *e->count);
-    for (int o = 0; o < i; ++o) {
-      if (r->entry[o].kind != CF_KIND_PARTICLE || r->entry[o].count != e->count) continue;
-      CF_TRY(count_particles(h, &r->entry[o], &other));
-      if (other != count)
-        return cf_fail(CF_BAD_FILE, "%s: %s has %" PRId64 " particles, but %s has %" PRId64,
-                       h->draft.path.text, e->name, count, r->entry[o].name, other);
-    }
-  }
-  return CF_OK;
-}
-
-static cf_status fit(cf_hdf5 *h, const cf_registry *r, const bool has_room) {
+static cf_status fit(cf_hdf5 *h, const cf_registry *r) {
   CF_TRY(fit_facts(h, r));
   for (int e = 0; e < r->count; ++e) CF_TRY(fit_entry(h, r, &r->entry[e]));
-  CF_TRY(cf_hdf5_each(h, "/state", visit_known, (void *)(uintptr_t)r));
-  return fit_particles(h, r, has_room);
+  return cf_hdf5_each(h, "/state", visit_known, (void *)(uintptr_t)r);
 }
 
 /* --- into the registry ---------------------------------------------------------------------------------- */
 
-static cf_status make_room(cf_hdf5 *h, const cf_registry *r, const cf_checkpoint_room *room) {
-  for (int i = 0; i < r->count; ++i) {
-    const cf_entry *e = &r->entry[i];
-    int64_t count;
-    if (e->kind != CF_KIND_PARTICLE) continue;
-    CF_TRY(count_particles(h, e, &count));
-    if (count != *e->count) CF_TRY(room->make(room->context, e, count));
-    if (count != *e->count)
-      return cf_fail(CF_FAILED, "%s: no room was made for the %" PRId64 " particles of %s",
-                     h->draft.path.text, count, e->name);
-  }
+/* Room is there for all sets before any is changed. */
+static cf_status make_room(cf_hdf5 *h, const cf_registry *r) {
+  int64_t count;
+  for (int pass = 0; pass < 2; ++pass)
+    for (int i = 0; i < r->count; ++i) {
+      const cf_entry *e = &r->entry[i];
+      if (e->kind != CF_KIND_PARTICLES) continue;
+      CF_TRY(read_count(h, e, &count));
+      if (pass == 0)
+        CF_TRY(cf_particles_reserve(e->particles, count));
+      else
+        e->particles->count = count;
+    }
   return CF_OK;
 }
 
-static cf_status read_fields(cf_hdf5 *h, const cf_registry *r, const cf_entry *e) {
-  const cf_box *b = &r->grid->box;
+static cf_status take_over(cf_hdf5 *h, const cf_registry *r) {
+  cf_part part;
   cf_path path;
-  if (e->kind == CF_KIND_CELL) {
-    const cf_slabs s = cf_slabs_of_cell(b, e->cell);
-    CF_TRY(cf_path_make(&path, "/state/%s", e->name));
-    return cf_hdf5_read_slabs(h, path.text, &s);
-  }
-  for (int a = 0; a < b->dim; ++a) {
-    const cf_slabs s = cf_slabs_of_face(b, &e->face, a);
-    CF_TRY(cf_path_make(&path, "/state/%s/%c", e->name, "xyz"[a]));
-    CF_TRY(cf_hdf5_read_slabs(h, path.text, &s));
-  }
+  CF_TRY(fit(h, r));
+  CF_TRY(make_room(h, r));
+  for (int e = 0; e < r->count; ++e)
+    for (int i = 0; cf_part_of(r, &r->entry[e], i, &part); ++i) {
+      if (part.derived) continue;
+      CF_TRY(cf_path_make(&path, "/state/%s", part.name));
+      CF_TRY(cf_hdf5_read_part(h, path.text, &part));
+    }
   return CF_OK;
 }
 
-static cf_status read_entry(cf_hdf5 *h, const cf_registry *r, const cf_entry *e) {
-  if (e->kind == CF_KIND_CELL || e->kind == CF_KIND_FACE) return read_fields(h, r, e);
-  cf_array a = array_of(r, e, -1);
-  cf_path path;
-  CF_TRY(cf_path_make(&path, "/state/%s", e->name));
-  if (e->kind == CF_KIND_COUNTER) return cf_hdf5_read(h, path.text, &a, e->counter);
-  if (e->kind == CF_KIND_NUMBER) return cf_hdf5_read(h, path.text, &a, e->number);
-  a.n[0] = *e->count;
-  return cf_hdf5_read(h, path.text, &a, *e->particles);
-}
-
-static cf_status take_over(cf_hdf5 *h, const cf_registry *r, const cf_checkpoint_room *room) {
-  CF_TRY(fit(h, r, room != NULL));
-  if (room != NULL) CF_TRY(make_room(h, r, room));
-  for (int e = 0; e < r->count; ++e) CF_TRY(read_entry(h, r, &r->entry[e]));
-  return CF_OK;
-}
-
-cf_status cf_checkpoint_read(const char *path, const cf_registry *r, const cf_checkpoint_room *room) {
+cf_status cf_checkpoint_read(const char *path, const cf_registry *r, const void *nothing) {
+  (void)nothing;
   cf_hdf5 h;
   CF_TRY(cf_head_check(path));
   CF_TRY(cf_hdf5_open(&h, path));
-  return cf_hdf5_close(&h, take_over(&h, r, room));
+  return cf_hdf5_close(&h, take_over(&h, r));
 }

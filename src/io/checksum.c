@@ -16,10 +16,15 @@ static uint64_t step(const uint64_t h, const uint64_t word, const uint64_t facto
   return mixed ^ (mixed >> 29);
 }
 
+/* Little-endian whatever the machine; compilers make one load of it. */
+static uint64_t word_at(const unsigned char *b) {
+  uint64_t word = 0;
+  for (int i = 0; i < 8; ++i) word |= (uint64_t)b[i] << 8 * i;
+  return word;
+}
+
 static void add_round(uint64_t lane[4], const unsigned char *bytes) {
-  uint64_t word[4];
-  memcpy(word, bytes, ROUND);
-  for (int l = 0; l < 4; ++l) lane[l] = step(lane[l], word[l], odd[l]);
+  for (int l = 0; l < 4; ++l) lane[l] = step(lane[l], word_at(bytes + 8 * l), odd[l]);
 }
 
 void cf_checksum_start(cf_checksum *c) {
@@ -59,9 +64,22 @@ uint64_t cf_checksum_end(const cf_checksum *c) {
   return h ^ (h >> 31);
 }
 
-uint64_t cf_checksum_of(const void *bytes, const size_t count) {
+void cf_checksum_add_values(cf_checksum *c, const void *values, const size_t count, const size_t size) {
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+  cf_checksum_add(c, values, count * size);
+#else
+  const unsigned char *at = values;
+  for (size_t i = 0; i < count; ++i, at += size) {
+    unsigned char turned[8];
+    for (size_t b = 0; b < size; ++b) turned[b] = at[size - 1 - b];
+    cf_checksum_add(c, turned, size);
+  }
+#endif
+}
+
+uint64_t cf_checksum_of(const void *values, const size_t count, const size_t size) {
   cf_checksum c;
   cf_checksum_start(&c);
-  cf_checksum_add(&c, bytes, count);
+  cf_checksum_add_values(&c, values, count, size);
   return cf_checksum_end(&c);
 }

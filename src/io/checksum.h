@@ -26,7 +26,10 @@ void cf_checksum_start(cf_checksum *c);
 void cf_checksum_add(cf_checksum *c, const void *bytes, size_t count);
 uint64_t cf_checksum_end(const cf_checksum *c); /* may be asked in between */
 
-/* All at once. */
-uint64_t cf_checksum_of(const void *bytes, size_t count);
+/* Numbers of `size` bytes (1, 4 or 8), as a little-endian machine has them: the same everywhere. */
+void cf_checksum_add_values(cf_checksum *c, const void *values, size_t count, size_t size);
+
+/* Of an array of numbers. */
+uint64_t cf_checksum_of(const void *values, size_t count, size_t size);
 
 #endif

@@ -3,13 +3,13 @@
  * Frames: what a run shows at one time, in the VTKHDF layout that ParaView (5.12 and later), VTK and h5py
  * read.
  *
- *   fields_000012.vtkhdf      ImageData. /VTKHDF/CellData/phi, shape (nz, ny, nx), nz = 1 in 2D (one cell
- * thick). A face field q is there as vectors at the cells (means of the two faces), and as stored under
- * /faces/q/x, /y, /z (low faces, and the last face of the axis). Numbers and counters under
- * /VTKHDF/FieldData, with `Time`. particles_000012.vtkhdf   PolyData, one for each set of particles. The
- * entries of a set are named SET.ATTRIBUTE and share their count; SET.position has the places; SET is the
- * word in the file's name. fields.vtkhdf.series      the times of all frames, for ParaView; likewise for
- * particles
+ *   fields_000012.vtkhdf      ImageData. /VTKHDF/CellData/phi, shape (nz, ny, nx), nz = 1 in 2D (one cell thick).
+ *                             A face field q is there as vectors at the cells (means of the two faces), and as
+ *                             stored under /faces/q/x, /y, /z (low faces, and the last face of the axis). Numbers
+ *                             and counters under /VTKHDF/FieldData, with `Time`.
+ *   particles_000012.vtkhdf   PolyData: /VTKHDF/Points, attributes and `id` under /VTKHDF/PointData. Of a run with
+ *                             several sets this is the first; the others are particles_SET_000012.vtkhdf.
+ *   fields.vtkhdf.series      the times of all frames, for ParaView; likewise for particles
  *
  * Every array has its unit as an attribute; the file has title, version, precision, time, step and frame.
  * Values keep the precision of the state. The same run writes the same bytes.
@@ -17,15 +17,15 @@
 #ifndef CF_IO_FRAME_H
 #define CF_IO_FRAME_H
 
-#include "grid/registry.h"
 #include "io/folder.h"
+#include "io/parts.h"
 #include "io/stamp.h"
 
 #define CF_FRAME_FIELDS 64
 
 typedef struct cf_frame_plan {
   int count;                /* of names */
-  const char *const *names; /* entries of the registry (of particles: SET, or SET.ATTRIBUTE) */
+  const char *const *names; /* as in cf_choice (io/parts.h); NULL: everything */
   int compression;          /* 0 (none) to 9 */
 } cf_frame_plan;
 

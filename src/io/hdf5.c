@@ -110,6 +110,21 @@ cf_status cf_hdf5_close(cf_hdf5 *h, cf_status so_far) {
   return so_far;
 }
 
+cf_hdf5_window cf_hdf5_window_open(const hid_t set, const int rank, const uint64_t *start,
+                                   const uint64_t *count) {
+  hsize_t from[4], extent[4];
+  for (int d = 0; d < rank; ++d) from[d] = start[d], extent[d] = count[d];
+  cf_hdf5_window w = {.file = H5Dget_space(set), .memory = H5Screate_simple(rank, extent, NULL)};
+  w.good = w.file >= 0 && w.memory >= 0 &&
+           H5Sselect_hyperslab(w.file, H5S_SELECT_SET, from, NULL, extent, NULL) >= 0;
+  return w;
+}
+
+void cf_hdf5_window_close(const cf_hdf5_window *w) {
+  H5Sclose(w->memory);
+  H5Sclose(w->file);
+}
+
 /* --- types ------------------------------------------------------------------------------------------------
  */
 
@@ -123,10 +138,6 @@ hid_t cf_hdf5_file_type(const cf_element e) {
   if (e == CF_ELEMENT_INTEGER) return H5T_STD_I64LE;
   if (e == CF_ELEMENT_BYTE) return H5T_STD_U8LE;
   return e == CF_ELEMENT_REAL && sizeof(cf_real) == 4 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
-}
-
-static size_t element_size(const cf_element e) {
-  return e == CF_ELEMENT_BYTE ? 1 : e == CF_ELEMENT_REAL ? sizeof(cf_real) : 8;
 }
 
 /* --- groups and attributes ---------------------------------------------------------------------------- */
@@ -212,16 +223,10 @@ static hid_t create_dataset(cf_hdf5 *h, const char *path, const cf_array *a, con
   return set;
 }
 
-static uint64_t bytes_of(const cf_array *a) {
-  uint64_t bytes = element_size(a->element);
-  for (int d = 0; d < a->rank; ++d) bytes *= (uint64_t)a->n[d];
-  return bytes;
-}
-
 /* An empty array has no place. */
 static void find_place(const hid_t set, const cf_array *a, cf_extent *extent) {
   const haddr_t offset = H5Dget_offset(set);
-  extent->bytes = bytes_of(a);
+  extent->bytes = cf_array_bytes(a);
   extent->offset = offset == HADDR_UNDEF ? 0 : (uint64_t)offset;
 }
 
@@ -230,36 +235,27 @@ cf_status cf_hdf5_write(cf_hdf5 *h, const char *path, const cf_array *a, const v
   const hid_t list = dataset_list(0, a->rank, NULL);
   const hid_t set = create_dataset(h, path, a, list);
   bool good = set >= 0;
-  if (good && bytes_of(a) > 0)
+  if (good && cf_array_bytes(a) > 0)
     good = H5Dwrite(set, cf_hdf5_memory_type(a->element), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
   good = good && h->error == 0;
   const cf_status s = good ? CF_OK : cf_hdf5_fail(h, "write", path);
   if (good && extent != NULL) {
     find_place(set, a, extent);
-    extent->checksum = cf_checksum_of(values, (size_t)extent->bytes);
+    extent->checksum = cf_checksum_of(values, (size_t)extent->bytes / cf_element_size(a->element),
+                                      cf_element_size(a->element));
   }
   if (set >= 0) H5Dclose(set);
   H5Pclose(list);
   return s;
 }
 
-cf_array cf_slabs_array(const cf_slabs *s) {
-  cf_array a = {.element = CF_ELEMENT_REAL, .rank = s->components > 1 ? 4 : 3};
-  for (int d = 0; d < 3; ++d) a.n[d] = s->n[2 - d];
-  a.n[3] = s->components;
-  return a;
-}
-
 static bool write_piece(const hid_t set, const cf_slabs *s, const cf_slab p, const cf_real *values) {
-  const int rank = s->components > 1 ? 4 : 3;
-  const hsize_t start[4] = {(hsize_t)p.k, (hsize_t)p.j, 0, 0};
-  const hsize_t count[4] = {1, (hsize_t)p.rows, (hsize_t)s->n[0], (hsize_t)s->components};
-  const hid_t file = H5Dget_space(set), memory = H5Screate_simple(rank, count, NULL);
-  const bool good =
-      file >= 0 && memory >= 0 && H5Sselect_hyperslab(file, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-      H5Dwrite(set, cf_hdf5_memory_type(CF_ELEMENT_REAL), memory, file, H5P_DEFAULT, values) >= 0;
-  H5Sclose(memory);
-  H5Sclose(file);
+  uint64_t start[4], count[4];
+  cf_slab_window(s, p, start, count);
+  const cf_hdf5_window w = cf_hdf5_window_open(set, cf_slabs_array(s).rank, start, count);
+  const bool good = w.good && H5Dwrite(set, cf_hdf5_memory_type(CF_ELEMENT_REAL), w.memory, w.file,
+                                       H5P_DEFAULT, values) >= 0;
+  cf_hdf5_window_close(&w);
   return good;
 }
 
@@ -268,7 +264,7 @@ static bool write_pieces(const hid_t set, const cf_slabs *s, cf_real *buffer, cf
   for (int64_t i = 0; cf_slabs_piece(s, i, &piece); ++i) {
     cf_slab_gather(s, piece, buffer);
     if (!write_piece(set, s, piece, buffer)) return false;
-    cf_checksum_add(sum, buffer, cf_slab_size(s, piece) * sizeof *buffer);
+    cf_checksum_add_values(sum, buffer, cf_slab_size(s, piece), sizeof *buffer);
   }
   return true;
 }
@@ -276,12 +272,15 @@ static bool write_pieces(const hid_t set, const cf_slabs *s, cf_real *buffer, cf
 cf_status cf_hdf5_write_slabs(cf_hdf5 *h, const char *path, const cf_slabs *s, const int compression,
                               cf_extent *extent) {
   const cf_array a = cf_slabs_array(s);
-  const hsize_t chunk[4] = {1, (hsize_t)s->rows, (hsize_t)s->n[0], (hsize_t)s->components};
+  uint64_t start[4], window[4];
+  hsize_t chunk[4];
   cf_real *buffer;
   cf_checksum sum;
+  cf_slab_window(s, (cf_slab){.rows = s->rows}, start, window);
+  for (int d = 0; d < 4; ++d) chunk[d] = window[d];
   CF_TRY(CF_NEW(&buffer, cf_slabs_room(s)));
   cf_checksum_start(&sum);
-  const hid_t list = dataset_list(compression, a.rank, chunk);
+  const hid_t list = dataset_list(cf_array_bytes(&a) > 0 ? compression : 0, a.rank, chunk);
   const hid_t set = create_dataset(h, path, &a, list);
   const bool good = set >= 0 && write_pieces(set, s, buffer, &sum) && h->error == 0;
   const cf_status status = good ? CF_OK : cf_hdf5_fail(h, "write", path);
@@ -293,4 +292,13 @@ cf_status cf_hdf5_write_slabs(cf_hdf5 *h, const char *path, const cf_slabs *s, c
   H5Pclose(list);
   cf_free(buffer);
   return status;
+}
+
+cf_status cf_hdf5_write_part(cf_hdf5 *h, const char *path, const cf_part *p, const int compression,
+                             cf_extent *extent) {
+  if (p->streamed)
+    CF_TRY(cf_hdf5_write_slabs(h, path, &p->slabs, compression, extent));
+  else
+    CF_TRY(cf_hdf5_write(h, path, &p->array, p->values, extent));
+  return cf_hdf5_set_text(h, path, "unit", p->unit);
 }

@@ -16,7 +16,7 @@
 #include <hdf5.h>
 
 #include "io/folder.h"
-#include "io/slabs.h"
+#include "io/parts.h"
 
 typedef struct cf_hdf5 {
   cf_draft draft; /* draft.path is what errors name */
@@ -49,19 +49,6 @@ cf_status cf_hdf5_set_numbers(cf_hdf5 *h, const char *path, const char *name, in
 cf_status cf_hdf5_set_integers(cf_hdf5 *h, const char *path, const char *name, int count,
                                const int64_t *values);
 
-typedef enum cf_element {
-  CF_ELEMENT_REAL,
-  CF_ELEMENT_NUMBER,
-  CF_ELEMENT_INTEGER,
-  CF_ELEMENT_BYTE
-} cf_element;
-
-typedef struct cf_array {
-  cf_element element;
-  int rank; /* 1 to 4 */
-  int64_t n[4];
-} cf_array;
-
 /* Where the values of an array lie in the file, and their checksum. */
 typedef struct cf_extent {
   uint64_t offset, bytes, checksum;
@@ -71,12 +58,13 @@ typedef struct cf_extent {
 cf_status cf_hdf5_write(cf_hdf5 *h, const char *path, const cf_array *a, const void *values,
                         cf_extent *extent);
 
-/* A field; compression 0 (none) to 9. `extent` (NULL unless uncompressed) as above. */
+/* A field or an attribute of particles; compression 0 (none) to 9. `extent` (NULL unless uncompressed) as above. */
 cf_status cf_hdf5_write_slabs(cf_hdf5 *h, const char *path, const cf_slabs *s, int compression,
                               cf_extent *extent);
 
-/* The array that a field is in a file. */
-cf_array cf_slabs_array(const cf_slabs *s);
+/* A part of the state (io/parts.h), with its unit. */
+cf_status cf_hdf5_write_part(cf_hdf5 *h, const char *path, const cf_part *p, int compression,
+                             cf_extent *extent);
 
 /* --- reading ------------------------------------------------------------------------------------------ */
 
@@ -93,6 +81,7 @@ cf_status cf_hdf5_shape(cf_hdf5 *h, const char *path, cf_array *a);
 /* The values of an array of that shape (checked). */
 cf_status cf_hdf5_read(cf_hdf5 *h, const char *path, const cf_array *a, void *values);
 cf_status cf_hdf5_read_slabs(cf_hdf5 *h, const char *path, const cf_slabs *s);
+cf_status cf_hdf5_read_part(cf_hdf5 *h, const char *path, const cf_part *p);
 
 /* One component of an array of vectors (or its only one) into a field; CF_MAGNITUDE (-1) the length. */
 cf_status cf_hdf5_read_component(cf_hdf5 *h, const char *path, const cf_slabs *s, int components,
@@ -108,5 +97,13 @@ cf_status cf_hdf5_each(cf_hdf5 *h, const char *path,
 cf_status cf_hdf5_fail(const cf_hdf5 *h, const char *what, const char *name);
 hid_t cf_hdf5_memory_type(cf_element e);
 hid_t cf_hdf5_file_type(cf_element e);
+
+/* A part of an array, in the file and in memory. */
+typedef struct cf_hdf5_window {
+  hid_t file, memory;
+  bool good;
+} cf_hdf5_window;
+cf_hdf5_window cf_hdf5_window_open(hid_t set, int rank, const uint64_t *start, const uint64_t *count);
+void cf_hdf5_window_close(const cf_hdf5_window *w);
 
 #endif

@@ -156,17 +156,13 @@ cf_status cf_hdf5_read(cf_hdf5 *h, const char *path, const cf_array *a, void *va
 }
 
 /* Reads one piece with all its components. */
-static bool read_piece(const hid_t set, const int components, const cf_slabs *s, const cf_slab p,
-                       cf_real *values) {
-  const int rank = components > 1 ? 4 : 3;
-  const hsize_t start[4] = {(hsize_t)p.k, (hsize_t)p.j, 0, 0};
-  const hsize_t count[4] = {1, (hsize_t)p.rows, (hsize_t)s->n[0], (hsize_t)components};
-  const hid_t file = H5Dget_space(set), memory = H5Screate_simple(rank, count, NULL);
-  const bool good =
-      file >= 0 && memory >= 0 && H5Sselect_hyperslab(file, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-      H5Dread(set, cf_hdf5_memory_type(CF_ELEMENT_REAL), memory, file, H5P_DEFAULT, values) >= 0;
-  H5Sclose(memory);
-  H5Sclose(file);
+static bool read_piece(const hid_t set, const cf_slabs *s, const cf_slab p, cf_real *values) {
+  uint64_t start[4], count[4];
+  cf_slab_window(s, p, start, count);
+  const cf_hdf5_window w = cf_hdf5_window_open(set, cf_slabs_array(s).rank, start, count);
+  const bool good = w.good && H5Dread(set, cf_hdf5_memory_type(CF_ELEMENT_REAL), w.memory, w.file,
+                                      H5P_DEFAULT, values) >= 0;
+  cf_hdf5_window_close(&w);
   return good;
 }
 
@@ -181,24 +177,23 @@ static void pick(const size_t n, const int components, const int component, cf_r
   }
 }
 
-cf_status cf_hdf5_read_component(cf_hdf5 *h, const char *path, const cf_slabs *s, const int components,
-                                 const int component) {
-  cf_array a = cf_slabs_array(s);
-  if (components > 1) a.rank = 4;
-  a.n[3] = components;
+/* `wide` has all components of the array, `into` those that are kept. */
+static cf_status read_pieces(cf_hdf5 *h, const char *path, const cf_slabs *wide, const cf_slabs *into,
+                             const int component) {
+  const cf_array a = cf_slabs_array(wide);
   cf_real *buffer;
+  cf_slab piece;
   hid_t set;
-  CF_TRY(CF_NEW(&buffer, cf_slabs_room(s) * (size_t)components));
+  CF_TRY(CF_NEW(&buffer, cf_slabs_room(wide)));
   cf_status status = open_array(h, path, &a, &set);
   if (status == CF_OK) {
-    cf_slab piece;
-    for (int64_t i = 0; status == CF_OK && cf_slabs_piece(s, i, &piece); ++i) {
-      if (!read_piece(set, components, s, piece, buffer)) {
+    for (int64_t i = 0; status == CF_OK && cf_slabs_piece(wide, i, &piece); ++i) {
+      if (!read_piece(set, wide, piece, buffer)) {
         status = cf_hdf5_fail(h, "read", path);
         break;
       }
-      pick(cf_slab_size(s, piece), components, component, buffer);
-      cf_slab_scatter(s, piece, buffer);
+      if (wide != into) pick(cf_slab_size(into, piece), wide->components, component, buffer);
+      cf_slab_scatter(into, piece, buffer);
     }
     H5Dclose(set);
   }
@@ -206,8 +201,19 @@ cf_status cf_hdf5_read_component(cf_hdf5 *h, const char *path, const cf_slabs *s
   return status;
 }
 
+cf_status cf_hdf5_read_component(cf_hdf5 *h, const char *path, const cf_slabs *s, const int components,
+                                 const int component) {
+  cf_slabs wide = *s;
+  wide.components = components;
+  return read_pieces(h, path, &wide, s, component);
+}
+
 cf_status cf_hdf5_read_slabs(cf_hdf5 *h, const char *path, const cf_slabs *s) {
-  return cf_hdf5_read_component(h, path, s, 1, 0);
+  return read_pieces(h, path, s, s, 0);
+}
+
+cf_status cf_hdf5_read_part(cf_hdf5 *h, const char *path, const cf_part *p) {
+  return p->streamed ? cf_hdf5_read_slabs(h, path, &p->slabs) : cf_hdf5_read(h, path, &p->array, p->values);
 }
 
 /* --- what is in a group --------------------------------------------------------------------------------- */

@@ -22,6 +22,7 @@
 typedef struct report {
   char *text;
   size_t length, room;
+  cf_checksum all; /* of the arrays of a file: of their checksums, in order */
 } report;
 
 static cf_status say(report *r, const char *format, ...) CF_PRINTF(2, 3);
@@ -56,44 +57,39 @@ typedef struct facts {
   int where[3];
 } facts;
 
-static cf_status look_at(const cf_box *b, const cf_cell f, facts *a) {
-  const cf_slabs s = cf_slabs_of_cell(b, f);
-  cf_checksum sum;
-  cf_slab piece;
-  cf_real *buffer;
-  double *rows;
-  CF_TRY(CF_NEW(&rows, 3 * (size_t)cf_box_rows(b)));
-  a->range = cf_sweep_range(b, 1, f.at, rows);
-  a->finite = cf_sweep_finite(b, 1, f.at, a->where) != 0;
-  cf_free(rows);
-  CF_TRY(CF_NEW(&buffer, cf_slabs_room(&s)));
-  cf_checksum_start(&sum);
-  for (int64_t i = 0; cf_slabs_piece(&s, i, &piece); ++i) {
-    cf_slab_gather(&s, piece, buffer);
-    cf_checksum_add(&sum, buffer, cf_slab_size(&s, piece) * sizeof *buffer);
-  }
-  a->checksum = cf_checksum_end(&sum);
-  cf_free(buffer);
-  return CF_OK;
-}
-
-/* One component of an array of rank 3 or 4, read into a field of its shape. */
+/* One component of an array (of a field, or with `shape` of rank 1 or 2 of particles), read without gaps. */
 static cf_status read_array(cf_hdf5 *h, const char *path, const cf_array *shape, const int component,
                             facts *a) {
-  const int n[3] = {(int)shape->n[2], (int)shape->n[1], (int)shape->n[0]};
-  cf_box b;
-  cf_cell f;
-  CF_TRY(cf_box_init(&b, 3, n, 0));
-  CF_TRY(cf_cell_create(&f, &b));
-  const cf_slabs s = cf_slabs_of_cell(&b, f);
-  cf_status status = cf_hdf5_read_component(h, path, &s, shape->rank == 4 ? (int)shape->n[3] : 1, component);
-  if (status == CF_OK) status = look_at(&b, f, a);
-  cf_cell_destroy(&f, &b);
+  const bool field = shape->rank > 2;
+  const int lead = field ? 3 : 1, n = (int)shape->n[0];
+  cf_box b = {.dim = 3, .n = {n, 1, 1}, .stride = {1, n, n}};
+  cf_real *values;
+  double *rows;
+  if (field) b = (cf_box){.dim = 3, .n = {(int)shape->n[2], (int)shape->n[1], n}};
+  if (field) b.stride[0] = 1, b.stride[1] = b.n[0], b.stride[2] = (ptrdiff_t)b.n[0] * b.n[1];
+  CF_TRY(CF_NEW(&values, cf_box_cells(&b)));
+  cf_slabs s = cf_slabs_of_cell(&b, (cf_cell){values});
+  if (!field) s = cf_slabs_of_list(n, 1, &values);
+  cf_status status =
+      cf_hdf5_read_component(h, path, &s, shape->rank > lead ? (int)shape->n[lead] : 1, component);
+  if (status == CF_OK) status = CF_NEW(&rows, 3 * (size_t)cf_box_rows(&b));
+  if (status == CF_OK) {
+    a->range = cf_sweep_range(&b, 1, values, rows);
+    a->finite = cf_sweep_finite(&b, 1, values, a->where) != 0;
+    a->checksum = cf_checksum_of(values, (size_t)cf_box_cells(&b), sizeof *values);
+    cf_free(rows);
+  }
+  cf_free(values);
   return status;
+}
+
+static void add_to_all(report *r, const uint64_t checksum) {
+  cf_checksum_add_values(&r->all, &checksum, 1, 8);
 }
 
 static cf_status say_facts(report *r, const char *name, const char *unit, const facts *a,
                            const double weight) {
+  add_to_all(r, a->checksum);
   CF_TRY(say(r, "  %-16s %-10s %24.17g %24.17g %24.17g  %016" PRIx64 "%s", name, unit, a->range.min,
              a->range.max, a->range.sum * weight, a->checksum, a->finite ? "\n" : "  NOT FINITE"));
   if (a->finite) return CF_OK;
@@ -104,9 +100,13 @@ static cf_status say_facts(report *r, const char *name, const char *unit, const 
 
 typedef struct listing {
   report *r;
-  const char *group; /* "/state" ... */
-  double volume;     /* of a cell */
+  const char *group;        /* "/state" ... */
+  char prefix[CF_NAME_MAX]; /* "q/" where the group is an entry of several parts */
+  double volume;            /* of a cell */
+  bool list;                /* arrays of one value a particle, not of numbers */
 } listing;
+
+static cf_status say_group(report *r, cf_hdf5 *h, const char *group, const char *prefix, double volume);
 
 static cf_status say_numbers(report *r, cf_hdf5 *h, const char *path, const char *name,
                              const cf_array *shape) {
@@ -132,54 +132,37 @@ static void find_unit(cf_hdf5 *h, const char *path, char unit[CF_NAME_MAX]) {
   if (cf_hdf5_get_text(h, group.text, "unit", unit, CF_NAME_MAX) != CF_OK) unit[0] = '\0';
 }
 
-/* Particles: components side by side, as if a field of one plane. */
-static cf_status say_particles(report *r, cf_hdf5 *h, const char *path, const char *name,
-                               const cf_array *shape) {
-  const int n[3] = {(int)CF_MAX(shape->n[1], 1), (int)shape->n[0], 1};
-  char unit[CF_NAME_MAX];
-  cf_real *values;
-  facts a;
-  if (shape->n[0] == 0) return say(r, "  %-16s no particles\n", name);
-  if (shape->n[0] > INT32_MAX) return say(r, "  %-16s %" PRId64 " particles\n", name, shape->n[0]);
-  find_unit(h, path, unit);
-  CF_TRY(CF_NEW(&values, (size_t)n[0] * (size_t)n[1]));
-  cf_box b = {.dim = 2, .n = {n[0], n[1], 1}, .stride = {1, n[0], (ptrdiff_t)n[0] * n[1]}};
-  const cf_array wanted = {CF_ELEMENT_REAL, shape->rank, {shape->n[0], shape->n[1]}};
-  cf_status s = cf_hdf5_read(h, path, &wanted, values);
-  if (s == CF_OK) s = look_at(&b, (cf_cell){values}, &a);
-  if (s == CF_OK) s = say_facts(r, name, unit, &a, 1);
+/* Ids. */
+static cf_status say_integers(report *r, cf_hdf5 *h, const char *path, const char *name,
+                              const cf_array *shape) {
+  const cf_array a = {CF_ELEMENT_INTEGER, 1, {shape->n[0]}};
+  int64_t *values, least, most;
+  CF_TRY(CF_NEW(&values, shape->n[0]));
+  cf_status s = cf_hdf5_read(h, path, &a, values);
+  if (s == CF_OK) {
+    least = most = values[0];
+    for (int64_t i = 1; i < shape->n[0]; ++i)
+      least = CF_MIN(least, values[i]), most = CF_MAX(most, values[i]);
+    const uint64_t sum = cf_checksum_of(values, (size_t)shape->n[0], sizeof *values);
+    add_to_all(r, sum);
+    s = say(r, "  %-16s %-10s %24" PRId64 " %24" PRId64 " %24s  %016" PRIx64 "\n", name, "", least, most, "",
+            sum);
+  }
   cf_free(values);
   return s;
 }
 
 static cf_status say_components(report *r, cf_hdf5 *h, const char *path, const char *name,
                                 const cf_array *shape, const double weight) {
-  char unit[CF_NAME_MAX], full[CF_NAME_MAX + 4];
-  const int components = shape->rank == 4 ? (int)shape->n[3] : 1;
+  char unit[CF_NAME_MAX], full[2 * CF_NAME_MAX];
+  const int lead = shape->rank > 2 ? 3 : 1, components = shape->rank > lead ? (int)shape->n[lead] : 1;
   find_unit(h, path, unit);
   for (int c = 0; c < components; ++c) {
     facts a;
     CF_TRY(read_array(h, path, shape, c, &a));
-    snprintf(full, sizeof full, components > 1 ? "%s.%c" : "%s", name, "xyz"[c % 3]);
+    snprintf(full, sizeof full, components > 1 ? "%s.%c" : "%s", name,
+             components <= 3 ? "xyz"[c] : '0' + c % 10);
     CF_TRY(say_facts(r, full, unit, &a, weight));
-  }
-  return CF_OK;
-}
-
-static cf_status visit_array(void *context, cf_hdf5 *h, const char *name);
-
-/* A face field is a group of its components; the sum of faces is plain. */
-static cf_status visit_group(const listing *l, cf_hdf5 *h, const char *path, const char *name) {
-  for (int a = 0; a < 3; ++a) {
-    cf_path component;
-    cf_array shape;
-    char full[CF_NAME_MAX + 4];
-    CF_TRY(cf_path_make(&component, "%s/%c", path, "xyz"[a]));
-    if (!cf_hdf5_has(h, component.text)) continue;
-    CF_TRY(cf_hdf5_shape(h, component.text, &shape));
-    if (shape.rank != 3) continue;
-    snprintf(full, sizeof full, "%.60s/%c", name, "xyz"[a]);
-    CF_TRY(say_components(l->r, h, component.text, full, &shape, 1));
   }
   return CF_OK;
 }
@@ -188,12 +171,24 @@ static cf_status visit_array(void *context, cf_hdf5 *h, const char *name) {
   const listing *l = context;
   cf_path path;
   cf_array shape;
+  char full[2 * CF_NAME_MAX];
   CF_TRY(cf_path_make(&path, "%s/%s", l->group, name));
-  if (cf_hdf5_shape(h, path.text, &shape) != CF_OK) return visit_group(l, h, path.text, name);
-  const bool particles = strcmp(l->group, "/VTKHDF/PointData") == 0;
-  if (shape.rank == 2 || particles) return say_particles(l->r, h, path.text, name, &shape);
-  if (shape.rank == 1) return say_numbers(l->r, h, path.text, name, &shape);
-  return say_components(l->r, h, path.text, name, &shape, l->volume);
+  snprintf(full, sizeof full, "%s%s", l->prefix, name);
+  if (cf_hdf5_shape(h, path.text, &shape) != CF_OK) return say_group(l->r, h, path.text, full, 1);
+  if (shape.rank > 2) return say_components(l->r, h, path.text, full, &shape, l->volume);
+  if (shape.n[0] == 0) return say(l->r, "  %-16s none\n", full);
+  if (shape.rank == 1 && !l->list) return say_numbers(l->r, h, path.text, full, &shape);
+  if (shape.n[0] > INT32_MAX) return say(l->r, "  %-16s %" PRId64 " values\n", full, shape.n[0]);
+  if (shape.element == CF_ELEMENT_INTEGER) return say_integers(l->r, h, path.text, full, &shape);
+  return say_components(l->r, h, path.text, full, &shape, 1);
+}
+
+/* `prefix`, if not "", is the name of a face field or a set of particles, whose parts the group holds. */
+static cf_status say_group(report *r, cf_hdf5 *h, const char *group, const char *prefix,
+                           const double volume) {
+  listing l = {r, group, "", volume, prefix[0] != '\0' || strcmp(group, "/VTKHDF/PointData") == 0};
+  if (prefix[0] != '\0') snprintf(l.prefix, sizeof l.prefix, "%.60s/", prefix);
+  return cf_hdf5_has(h, group) ? cf_hdf5_each(h, group, visit_array, &l) : CF_OK;
 }
 
 static cf_status say_head(report *r, cf_hdf5 *h) {
@@ -212,11 +207,6 @@ static cf_status say_head(report *r, cf_hdf5 *h) {
   return say(r, "  time     %.17g s, step %" PRId64 "\n", time, step);
 }
 
-static cf_status say_group(report *r, cf_hdf5 *h, const char *group, const double volume) {
-  listing l = {r, group, volume};
-  return cf_hdf5_has(h, group) ? cf_hdf5_each(h, group, visit_array, &l) : CF_OK;
-}
-
 static const char columns[] =
     "  field            unit                            min                      max                      "
     "sum  "
@@ -231,7 +221,7 @@ static cf_status say_state(report *r, cf_hdf5 *h) {
   CF_TRY(cf_hdf5_get_numbers(h, "/", "spacing", 1, &spacing));
   CF_TRY(say(r, "  grid     %" PRId64 " x %" PRId64 " x %" PRId64 " cells, h = %.17g m\n%s", n[0], n[1], n[2],
              spacing, columns));
-  return say_group(r, h, "/state", pow(spacing, (double)dim));
+  return say_group(r, h, "/state", "", pow(spacing, (double)dim));
 }
 
 static cf_status say_frame(report *r, cf_hdf5 *h) {
@@ -248,18 +238,24 @@ static cf_status say_frame(report *r, cf_hdf5 *h) {
                extent[3], extent[5], spacing[0]));
   }
   CF_TRY(say(r, "%s", columns));
-  CF_TRY(say_group(r, h, "/VTKHDF/CellData", pow(spacing[0], (double)dim)));
-  CF_TRY(say_group(r, h, "/faces", 1));
-  return say_group(r, h, "/VTKHDF/PointData", 1);
+  CF_TRY(say_group(r, h, "/VTKHDF/CellData", "", pow(spacing[0], (double)dim)));
+  CF_TRY(say_group(r, h, "/faces", "", 1));
+  return say_group(r, h, "/VTKHDF/PointData", "", 1);
+}
+
+static cf_status say_all(report *r, const cf_status so_far) {
+  CF_TRY(so_far);
+  return say(r, "  checksum of all arrays: %016" PRIx64 "\n", cf_checksum_end(&r->all));
 }
 
 static cf_status say_file(report *r, const char *path) {
   cf_hdf5 h;
+  cf_checksum_start(&r->all);
   const cf_status whole = cf_checkpoint_check(path);
   if (whole == CF_OK) {
     CF_TRY(say(r, "%s: a checkpoint, whole\n", path));
     CF_TRY(cf_hdf5_open(&h, path));
-    return cf_hdf5_close(&h, say_state(r, &h));
+    return cf_hdf5_close(&h, say_all(r, say_state(r, &h)));
   }
   /* A damaged checkpoint is not handed to HDF5. */
   if (strstr(cf_status_sentence(), "is not a checkpoint") == NULL) return whole;
@@ -267,7 +263,7 @@ static cf_status say_file(report *r, const char *path) {
   cf_status s = CF_OK;
   if (!cf_hdf5_has(&h, "/VTKHDF")) s = cf_fail(CF_BAD_FILE, "%s: is neither a frame nor a checkpoint", path);
   if (s == CF_OK) s = say(r, "%s: a frame\n", path);
-  if (s == CF_OK) s = say_frame(r, &h);
+  if (s == CF_OK) s = say_all(r, say_frame(r, &h));
   return cf_hdf5_close(&h, s);
 }
 
@@ -306,7 +302,7 @@ static cf_status say_folder(report *r, const char *path) {
 }
 
 cf_status cf_info_text(const char *path, char **text) {
-  report r = {NULL, 0, 0};
+  report r = {.text = NULL};
   struct stat what;
   *text = NULL;
   const bool folder = stat(path, &what) == 0 && S_ISDIR(what.st_mode);

@@ -9,33 +9,25 @@
 
 #include "base/mem.h"
 #include "io/folder.h"
-#include "io/slabs.h"
 
 #define HEAD_ALIGN 64 /* the values begin on a multiple of this */
 
 /* Magic, version 1.0, length of the description, and the description padded with blanks up to a newline. */
-static bool write_head(FILE *file, const int rank, const int64_t *shape) {
+static bool write_head(FILE *file, const cf_array *a) {
   char text[256];
-  int length = snprintf(text, sizeof text, "{'descr': '<f%d', 'fortran_order': False, 'shape': (",
-                        (int)sizeof(cf_real));
-  for (int d = 0; d < rank; ++d)
-    length += snprintf(text + length, sizeof text - (size_t)length, "%" PRId64 "%s", shape[d],
-                       rank == 1      ? ","
-                       : d + 1 < rank ? ", "
-                                      : "");
+  int length = snprintf(text, sizeof text, "{'descr': '<%c%d', 'fortran_order': False, 'shape': (",
+                        a->element == CF_ELEMENT_INTEGER ? 'i' : 'f', (int)cf_element_size(a->element));
+  for (int d = 0; d < a->rank; ++d)
+    length += snprintf(text + length, sizeof text - (size_t)length, "%" PRId64 "%s", a->n[d],
+                       a->rank == 1      ? ","
+                       : d + 1 < a->rank ? ", "
+                                         : "");
   length += snprintf(text + length, sizeof text - (size_t)length, "), }");
   const int padded = (10 + length + HEAD_ALIGN) / HEAD_ALIGN * HEAD_ALIGN - 10;
   const unsigned char magic[10] = {
       0x93, 'N', 'U', 'M', 'P', 'Y', 1, 0, (unsigned char)padded, (unsigned char)(padded >> 8)};
   return fwrite(magic, 1, 10, file) == 10 && fprintf(file, "%-*s\n", padded - 1, text) == padded;
 }
-
-typedef struct array {
-  int rank;
-  int64_t shape[3];
-  const cf_slabs *slabs; /* of a field */
-  const cf_real *values; /* else: all in one piece */
-} array;
 
 static bool write_slabs(FILE *file, const cf_slabs *s, cf_real *buffer) {
   cf_slab piece;
@@ -47,17 +39,17 @@ static bool write_slabs(FILE *file, const cf_slabs *s, cf_real *buffer) {
   return true;
 }
 
-static bool write_values(FILE *file, const array *a, cf_real *buffer) {
-  if (a->slabs != NULL) return write_slabs(file, a->slabs, buffer);
-  const size_t size = (size_t)(a->shape[0] * (a->rank == 2 ? a->shape[1] : 1));
-  return size == 0 || fwrite(a->values, sizeof *a->values, size, file) == size;
+static bool write_values(FILE *file, const cf_part *p, cf_real *buffer) {
+  if (p->streamed) return write_slabs(file, &p->slabs, buffer);
+  const size_t bytes = (size_t)cf_array_bytes(&p->array);
+  return bytes == 0 || fwrite(p->values, 1, bytes, file) == bytes;
 }
 
-static cf_status write_file(const cf_draft *draft, const array *a, cf_real *buffer) {
+static cf_status write_file(const cf_draft *draft, const cf_part *p, cf_real *buffer) {
   FILE *file = fopen(draft->temporary.text, "wbe");
   if (file == NULL)
     return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", draft->path.text, strerror(errno));
-  const bool good = write_head(file, a->rank, a->shape) && write_values(file, a, buffer) && fflush(file) == 0;
+  const bool good = write_head(file, &p->array) && write_values(file, p, buffer) && fflush(file) == 0;
   const int reason = errno;
   if (fclose(file) != 0 || !good) {
     cf_draft_drop(draft);
@@ -67,76 +59,43 @@ static cf_status write_file(const cf_draft *draft, const array *a, cf_real *buff
   return cf_draft_keep(draft);
 }
 
-static cf_status write_array(const cf_path *path, const array *a) {
+static cf_status write_array(const cf_path *path, const cf_part *p) {
   cf_draft draft;
   cf_real *buffer = NULL;
   CF_TRY(cf_draft_begin(&draft, path->text));
-  if (a->slabs != NULL) CF_TRY(CF_NEW(&buffer, cf_slabs_room(a->slabs)));
-  const cf_status s = write_file(&draft, a, buffer);
+  if (p->streamed) CF_TRY(CF_NEW(&buffer, cf_slabs_room(&p->slabs)));
+  const cf_status s = write_file(&draft, p, buffer);
   cf_free(buffer);
   return s;
 }
 
-/* In 2D the z axis of the slabs (one plane) is left out. */
-static cf_status write_field(const cf_path *path, const cf_slabs *s) {
-  array a = {.rank = s->box->dim, .slabs = s};
-  for (int d = 0; d < a.rank; ++d) a.shape[d] = s->n[a.rank - 1 - d];
-  return write_array(path, &a);
-}
-
-static cf_status write_faces(const char *folder, const int64_t frame, const cf_registry *r,
-                             const cf_entry *e) {
-  for (int axis = 0; axis < r->grid->box.dim; ++axis) {
-    const cf_slabs s = cf_slabs_of_face(&r->grid->box, &e->face, axis);
-    cf_path path;
-    CF_TRY(cf_path_make(&path, "%s/fields_%06" PRId64 "_%s_%c.npy", folder, frame, e->name, "xyz"[axis]));
-    CF_TRY(write_field(&path, &s));
+static cf_status write_part(const char *folder, const int64_t frame, const cf_registry *r, cf_part *p) {
+  const bool particles = p->entry->kind == CF_KIND_PARTICLES;
+  char word[2 * CF_NAME_MAX] = "fields", name[2 * CF_NAME_MAX];
+  cf_path path;
+  if (particles)
+    cf_particles_word(r, p->entry->particles, word, sizeof word);
+  else if (r->grid->box.dim == 2) { /* the z axis of one plane is left out */
+    p->slabs.axes = 2;
+    p->array = cf_slabs_array(&p->slabs);
   }
-  return CF_OK;
-}
-
-/* SET.ATTRIBUTE: one file an attribute. */
-static cf_status write_particles(const char *folder, const int64_t frame, const cf_entry *e) {
-  const char *dot = strchr(e->name, '.');
-  const array a = {
-      .rank = e->components > 1 ? 2 : 1, .shape = {*e->count, e->components}, .values = *e->particles};
-  cf_path path;
-  if (dot == NULL)
-    CF_TRY(cf_path_make(&path, "%s/particles_%06" PRId64 "_%s.npy", folder, frame, e->name));
-  else
-    CF_TRY(cf_path_make(&path, "%s/%.*s_%06" PRId64 "_%s.npy", folder, (int)(dot - e->name), e->name, frame,
-                        dot + 1));
-  return write_array(&path, &a);
-}
-
-static cf_status write_entry(const char *folder, const int64_t frame, const cf_registry *r,
-                             const cf_entry *e) {
-  cf_path path;
-  if (e->kind == CF_KIND_FACE) return write_faces(folder, frame, r, e);
-  if (e->kind == CF_KIND_PARTICLE) return write_particles(folder, frame, e);
-  if (e->kind != CF_KIND_CELL) return CF_OK;
-  const cf_slabs s = cf_slabs_of_cell(&r->grid->box, e->cell);
-  CF_TRY(cf_path_make(&path, "%s/fields_%06" PRId64 "_%s.npy", folder, frame, e->name));
-  return write_field(&path, &s);
-}
-
-/* Whether the entry is meant by a name: its own, or that of its set of particles. */
-static bool is_meant(const cf_entry *e, const char *name) {
-  const size_t length = strlen(name);
-  if (strcmp(e->name, name) == 0) return true;
-  return e->kind == CF_KIND_PARTICLE && strncmp(e->name, name, length) == 0 && e->name[length] == '.';
+  snprintf(name, sizeof name, "%s", particles ? cf_part_own(p) : p->name);
+  for (char *slash = strchr(name, '/'); slash != NULL; slash = strchr(slash, '/')) *slash = '_'; /* q/x */
+  CF_TRY(cf_path_make(&path, "%s/%s_%06" PRId64 "_%s.npy", folder, word, frame, name));
+  return write_array(&path, p);
 }
 
 cf_status cf_npy_write(const char *folder, const int64_t frame, const cf_registry *r, const int count,
                        const char *const *names) {
-  for (int i = 0; i < count; ++i) {
-    int meant = 0;
-    for (int e = 0; e < r->count; ++e) {
-      if (!is_meant(&r->entry[e], names[i])) continue;
-      ++meant;
-      CF_TRY(write_entry(folder, frame, r, &r->entry[e]));
-    }
-    if (meant == 0) return cf_fail(CF_BAD_ARGUMENT, "there is no field \"%s\" to write", names[i]);
+  const cf_choice choice = {count, names};
+  CF_TRY(cf_choice_check(&choice, r));
+  for (int e = 0; e < r->count; ++e) {
+    const cf_entry *entry = &r->entry[e];
+    cf_part part;
+    if (entry->kind == CF_KIND_NUMBER || entry->kind == CF_KIND_COUNTER) continue;
+    for (int i = 0; cf_part_of(r, entry, i, &part); ++i)
+      if (cf_choice_has_part(&choice, &part) && !(entry->kind == CF_KIND_PARTICLES && i == CF_PART_NEXT_ID))
+        CF_TRY(write_part(folder, frame, r, &part));
   }
   return CF_OK;
 }

@@ -29,8 +29,9 @@ typedef struct output_case {
   cf_cell phi;
   cf_face q;
   double ledger[3];
-  int64_t step, particles;
-  cf_real *position, *age;
+  int64_t step;
+  cf_particles *ink;
+  int age; /* the attribute's number */
   cf_stamp stamp;
   cf_path folder;
 } output_case;
@@ -47,8 +48,13 @@ static inline void output_case_fill(output_case *c, const double seed) {
           c->q.at[a][p] = (cf_real)(-seed - 1000 * (a + 1) - i / 7.0 - 10 * j - 100 * k);
       }
   for (int i = 0; i < 3; ++i) c->ledger[i] = seed + i / 9.0;
-  for (int i = 0; i < CASE_PARTICLES * b->dim; ++i) c->position[i] = (cf_real)(seed + i / 11.0);
-  for (int i = 0; i < CASE_PARTICLES; ++i) c->age[i] = (cf_real)(2 * seed + i / 13.0);
+  for (int i = 0; i < c->ink->count; ++i) {
+    for (int a = 0; a < b->dim; ++a)
+      c->ink->attribute[0].at[a][i] = (cf_real)(seed + (i * b->dim + a) / 11.0);
+    c->ink->attribute[c->age].at[0][i] = (cf_real)(2 * seed + i / 13.0);
+    c->ink->id[i] = (int64_t)seed + 10 * i;
+  }
+  c->ink->next_id = (int64_t)(1000 * seed);
   c->step = (int64_t)(7 * seed);
 }
 
@@ -56,23 +62,17 @@ static inline void output_case_create(output_case *c, const int dim) {
   const int cells[3] = {5, 4, 3};
   const double origin[3] = {-1, 0.5, 2};
   char folder[] = "/tmp/cattaneo-test-XXXXXX";
-  *c = (output_case){.particles = CASE_PARTICLES};
+  *c = (output_case){.step = 0};
   assert_int_equal(cf_grid_init(&c->grid, dim, cells, 0.25, origin), CF_OK);
   assert_int_equal(cf_registry_init(&c->registry, &c->grid), CF_OK);
   assert_int_equal(cf_cell_create(&c->phi, &c->grid.box), CF_OK);
   assert_int_equal(cf_face_create(&c->q, &c->grid.box), CF_OK);
-  c->position = calloc(CASE_PARTICLES * 3, sizeof *c->position);
-  c->age = calloc(CASE_PARTICLES, sizeof *c->age);
-  cf_entry e = {.kind = CF_KIND_PARTICLE, .count = &c->particles, .unit = "m", .name = "ink.position"};
-  e.components = dim;
-  e.particles = &c->position;
+  assert_int_equal(cf_particles_create(&c->ink, "ink", dim, 2), CF_OK);
+  assert_int_equal(cf_particles_attribute(c->ink, "age", "s", 1, CF_CARRIED, &c->age), CF_OK);
+  assert_int_equal(cf_particles_append(c->ink, CASE_PARTICLES, NULL), CF_OK);
   assert_int_equal(cf_registry_add_cell(&c->registry, "phi", "kg/m^3", c->phi), CF_OK);
   assert_int_equal(cf_registry_add_face(&c->registry, "q", "kg/m^2/s", c->q), CF_OK);
-  assert_int_equal(cf_registry_add_particles(&c->registry, &e), CF_OK);
-  e = (cf_entry){
-      .kind = CF_KIND_PARTICLE, .count = &c->particles, .components = 1, .unit = "s", .name = "ink.age"};
-  e.particles = &c->age;
-  assert_int_equal(cf_registry_add_particles(&c->registry, &e), CF_OK);
+  assert_int_equal(cf_registry_add_particles(&c->registry, c->ink), CF_OK);
   assert_int_equal(cf_registry_add_numbers(&c->registry, "ledger", "kg", c->ledger, 3), CF_OK);
   assert_int_equal(cf_registry_add_counter(&c->registry, "step", &c->step), CF_OK);
   c->stamp = (cf_stamp){
@@ -95,8 +95,7 @@ static inline void folder_remove(const char *folder) {
 
 static inline void output_case_destroy(output_case *c) {
   folder_remove(c->folder.text);
-  free(c->position);
-  free(c->age);
+  cf_particles_destroy(c->ink);
   cf_face_destroy(&c->q, &c->grid.box);
   cf_cell_destroy(&c->phi, &c->grid.box);
   cf_registry_clear(&c->registry);

@@ -15,29 +15,26 @@ static void every_kind_is_found_by_name(void **state) {
   OK(cf_grid_init(&g, 3, (int[3]){4, 4, 4}, 1, NULL));
   cf_registry r;
   OK(cf_registry_init(&r, &g));
-  cf_real cells = 0, *particles = &cells;
+  cf_real cells = 0;
   double number[3];
-  int64_t counter = 0, count = 1;
+  int64_t counter = 0;
   OK(cf_registry_add_cell(&r, "density", "1", (cf_cell){&cells}));
   OK(cf_registry_add_face(&r, "flux", "m/s", (cf_face){{&cells, &cells, &cells}}));
   OK(cf_registry_add_numbers(&r, "ledger", "", number, 3));
   OK(cf_registry_add_counter(&r, "steps", &counter));
-  const cf_entry entry = {.name = "position",
-                          .unit = "m",
-                          .kind = CF_KIND_PARTICLE,
-                          .particles = &particles,
-                          .count = &count,
-                          .components = 3};
-  OK(cf_registry_add_particles(&r, &entry));
+  cf_particles *ink;
+  OK(cf_particles_create(&ink, "ink", 3, 10));
+  OK(cf_registry_add_particles(&r, ink));
   assert_int_equal(r.count, 5);
   assert_int_equal(cf_registry_find(&r, "density")->kind, CF_KIND_CELL);
   assert_int_equal(cf_registry_find(&r, "flux")->components, 3);
   assert_string_equal(cf_registry_find(&r, "flux")->unit, "m/s");
   assert_ptr_equal(cf_registry_find(&r, "ledger")->number, number);
   assert_ptr_equal(cf_registry_find(&r, "steps")->counter, &counter);
-  assert_ptr_equal(cf_registry_find(&r, "position")->count, &count);
+  assert_ptr_equal(cf_registry_find(&r, "ink")->particles, ink);
   assert_null(cf_registry_find(&r, "dens"));
   assert_null(cf_registry_find(&r, ""));
+  cf_particles_destroy(ink);
   cf_registry_clear(&r);
   assert_int_equal(r.count, 0);
   cf_registry_clear(&r);

@@ -47,10 +47,13 @@ static size_t snapshot(const output_case *c, unsigned char *bytes) {
   memcpy(bytes + n, c->ledger, sizeof c->ledger);
   memcpy(bytes + n + sizeof c->ledger, &c->step, sizeof c->step);
   n += sizeof c->ledger + sizeof c->step;
-  memcpy(bytes + n, c->position, (size_t)(CASE_PARTICLES * b->dim) * sizeof(cf_real));
-  n += (size_t)(CASE_PARTICLES * b->dim) * sizeof(cf_real);
-  memcpy(bytes + n, c->age, CASE_PARTICLES * sizeof(cf_real));
-  return n + CASE_PARTICLES * sizeof(cf_real);
+  for (int a = 0; a < c->ink->attributes; ++a)
+    for (int d = 0; d < c->ink->attribute[a].components; ++d, n += CASE_PARTICLES * sizeof(cf_real))
+      memcpy(bytes + n, c->ink->attribute[a].at[d], CASE_PARTICLES * sizeof(cf_real));
+  memcpy(bytes + n, c->ink->id, CASE_PARTICLES * sizeof *c->ink->id);
+  n += CASE_PARTICLES * sizeof *c->ink->id;
+  memcpy(bytes + n, &c->ink->next_id, sizeof c->ink->next_id);
+  return n + sizeof c->ink->next_id;
 }
 
 static void write_good(output_case *c, const int64_t step, const int keep) {
@@ -144,10 +147,10 @@ static void other_shapes_and_names_are_refused(void **state) {
   assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
   assert_says("has no \"tip\" (number), which this scene needs");
   c->registry.count -= 1;
-  c->registry.entry[4].components = 2;
+  c->registry.entry[3].components = 2;
   assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
   assert_says("/state/ledger has another shape");
-  c->registry.entry[4].components = 3;
+  c->registry.entry[3].components = 3;
   c->grid.box.n[0] = 4;
   assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
   assert_says("expected 4 x 4 x 3 cells, found 5 x 4 x 3");
@@ -159,35 +162,49 @@ static void other_shapes_and_names_are_refused(void **state) {
   assert_int_equal(kept.count, c->registry.count);
 }
 
-static cf_status grow(void *context, const cf_entry *entry, const int64_t count) {
-  output_case *c = context;
-  (void)entry;
-  c->position = realloc(c->position, (size_t)count * 3 * sizeof *c->position);
-  c->age = realloc(c->age, (size_t)count * sizeof *c->age);
-  c->particles = count;
-  return CF_OK;
-}
-
 static void particles_get_room(void **state) {
   output_case *c = *state;
   write_good(c, 12, 2);
   const cf_path path = case_path(c, "checkpoint_000012.h5");
-  const cf_real last = c->age[CASE_PARTICLES - 1];
-  c->particles = 2;
+  cf_particles *fresh;
+  assert_int_equal(cf_particles_create(&fresh, "ink", 2, 1), CF_OK);
+  assert_int_equal(cf_particles_attribute(fresh, "age", "s", 1, CF_CARRIED, NULL), CF_OK);
+  assert_int_equal(cf_particles_append(fresh, 3, NULL), CF_OK);
+  c->registry.entry[2].particles = fresh;
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_OK);
+  assert_int_equal(fresh->count, CASE_PARTICLES);
+  assert_memory_equal(fresh->id, c->ink->id, CASE_PARTICLES * sizeof *fresh->id);
+  assert_memory_equal(fresh->attribute[0].at[1], c->ink->attribute[0].at[1],
+                      CASE_PARTICLES * sizeof(cf_real));
+  assert_memory_equal(fresh->attribute[1].at[0], c->ink->attribute[1].at[0],
+                      CASE_PARTICLES * sizeof(cf_real));
+  assert_int_equal(fresh->next_id, c->ink->next_id);
+  cf_particles_destroy(fresh);
+}
+
+static void other_attributes_are_refused(void **state) {
+  output_case *c = *state;
+  write_good(c, 12, 2);
+  const cf_path path = case_path(c, "checkpoint_000012.h5");
+  --c->ink->attributes;
   assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
-  assert_says("has 7 particles, expected 2");
-  const cf_checkpoint_room room = {grow, c};
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, &room), CF_OK);
-  assert_int_equal(c->particles, 7);
-  assert_true(c->age[CASE_PARTICLES - 1] == last);
+  assert_says("has \"ink.age\", which this scene does not know");
+  ++c->ink->attributes;
+  assert_int_equal(cf_particles_attribute(c->ink, "S", "", 1, CF_CARRIED, NULL), CF_OK);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
+  assert_says("has no array /state/ink/S");
+  c->ink->attribute[2].role = CF_DERIVED;
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_OK);
 }
 
 static void no_particles_is_a_state_too(void **state) {
   output_case *c = *state;
-  c->particles = 0;
+  c->ink->count = 0;
   write_good(c, 12, 2);
   const cf_path path = case_path(c, "checkpoint_000012.h5");
+  c->ink->count = 3;
   assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_OK);
+  assert_int_equal(c->ink->count, 0);
 }
 
 static void the_last_few_are_kept(void **state) {
@@ -307,6 +324,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(damage_names_the_array, setup, teardown),
       cmocka_unit_test_setup_teardown(other_shapes_and_names_are_refused, setup, teardown),
       cmocka_unit_test_setup_teardown(particles_get_room, setup_2d, teardown),
+      cmocka_unit_test_setup_teardown(other_attributes_are_refused, setup, teardown),
       cmocka_unit_test_setup_teardown(no_particles_is_a_state_too, setup, teardown),
       cmocka_unit_test_setup_teardown(the_last_few_are_kept, setup_2d, teardown),
       cmocka_unit_test_setup_teardown(newest_good_one_is_found, setup_2d, teardown),

@@ -83,11 +83,11 @@ static void names_choose_what_is_written(void **state) {
   plan.names = ink;
   assert_int_equal(cf_frame_write(c->folder.text, 3, &c->registry, &plan, &c->stamp), CF_OK);
   assert_int_equal(files_in(c->folder.text), 4);
-  assert_int_equal(cf_frame_read(&f, case_path(c, "ink_000003.vtkhdf").text), CF_BAD_FILE);
+  assert_int_equal(cf_frame_read(&f, case_path(c, "particles_000003.vtkhdf").text), CF_BAD_FILE);
   assert_says("is not a frame of fields");
   plan.names = none;
   assert_int_equal(cf_frame_write(c->folder.text, 3, &c->registry, &plan, &c->stamp), CF_BAD_ARGUMENT);
-  assert_says("there are: phi, q, ink.position, ink.age, ledger, step");
+  assert_says("there are: phi, q, ink, ink.position, ink.age, ledger, step");
 }
 
 static void read_text(const output_case *c, const char *name, char *text, const size_t size) {
@@ -110,8 +110,8 @@ static void series_lists_the_times(void **state) {
                       "    {\"name\": \"fields_000001.vtkhdf\", \"time\": 0.25},\n"
                       "    {\"name\": \"fields_000002.vtkhdf\", \"time\": 0.5}\n  ]\n}\n");
   assert_int_equal(cf_frame_cut(c->folder.text, 1), CF_OK);
-  read_text(c, "ink.vtkhdf.series", text, sizeof text);
-  assert_non_null(strstr(text, "\"ink_000001.vtkhdf\", \"time\": 0.25}\n"));
+  read_text(c, "particles.vtkhdf.series", text, sizeof text);
+  assert_non_null(strstr(text, "\"particles_000001.vtkhdf\", \"time\": 0.25}\n"));
   assert_null(strstr(text, "000002"));
   assert_int_equal(files_in(c->folder.text), 6);
   assert_int_equal(cf_frame_cut(c->folder.text, -1), CF_OK);
@@ -169,7 +169,7 @@ static void a_missing_folder_is_said(void **state) {
 
 static void no_particles_make_an_empty_file(void **state) {
   output_case *c = *state;
-  c->particles = 0;
+  c->ink->count = 0;
   assert_int_equal(write_frame(c, 0, 0), CF_OK);
 }
 

@@ -55,14 +55,15 @@ static void a_frame_tells_its_fields(void **state) {
                                "kg/m^3",
                                "q/x",
                                NULL};
-  const char *const ink[] = {"a frame", "age ", NULL};
+  const char *const ink[] = {"a frame", "age ", "id ", "checksum of all arrays", NULL};
   assert_info(case_path(c, "fields_000004.vtkhdf").text, parts);
-  assert_info(case_path(c, "ink_000004.vtkhdf").text, ink);
+  assert_info(case_path(c, "particles_000004.vtkhdf").text, ink);
 }
 
 static void a_checkpoint_tells_its_state(void **state) {
   const output_case *c = *state;
-  const char *const parts[] = {"a checkpoint, whole", "ledger", "step ", "ink.position", "phi ", "q/y", NULL};
+  const char *const parts[] = {
+      "a checkpoint, whole", "ledger", "step ", "ink/position.x", "phi ", "q/y", NULL};
   assert_info(case_path(c, "checkpoint_000012.h5").text, parts);
 }
 

@@ -63,7 +63,7 @@ static void arrays_are_in_c_order_without_ghosts(void **state) {
       for (int i = 0; i < 5; ++i)
         assert_true(v[(k * 5 + j) * 5 + i] == c->q.at[1][cf_box_at(&c->grid.box, i, j, k)]);
   cf_free(bytes);
-  assert_int_equal(files_in(c->folder.text), 6);
+  assert_int_equal(files_in(c->folder.text), 7);
 }
 
 static void two_dimensions_are_two(void **state) {
@@ -74,14 +74,14 @@ static void two_dimensions_are_two(void **state) {
   cf_free(bytes);
   values_of(c, "fields_000012_q_x.npy", "(4, 6)", 24, &bytes);
   cf_free(bytes);
-  values_of(c, "ink_000012_position.npy", "(7, 2)", 14, &bytes);
+  values_of(c, "particles_000012_position.npy", "(7, 2)", 14, &bytes);
   cf_free(bytes);
-  const cf_real *v = values_of(c, "ink_000012_age.npy", "(7,)", 7, &bytes);
-  assert_memory_equal(v, c->age, 7 * sizeof *v);
+  const cf_real *v = values_of(c, "particles_000012_age.npy", "(7,)", 7, &bytes);
+  assert_memory_equal(v, c->ink->attribute[c->age].at[0], 7 * sizeof *v);
   cf_free(bytes);
-  c->particles = 0;
+  c->ink->count = 0;
   assert_int_equal(write_all(c), CF_OK);
-  values_of(c, "ink_000012_age.npy", "(0,)", 0, &bytes);
+  values_of(c, "particles_000012_age.npy", "(0,)", 0, &bytes);
   cf_free(bytes);
 }
 
@@ -103,7 +103,7 @@ static void failing_memory_leaves_no_half_file(void **state) {
     cf_mem_fail_at(0);
     assert_true(s == CF_OK || s == CF_NO_MEMORY);
   }
-  assert_int_equal(files_in(c->folder.text), 6);
+  assert_int_equal(files_in(c->folder.text), 7);
 }
 
 int main(void) {
