@@ -13,7 +13,7 @@ double cf_sum_ordered(const double *v, const ptrdiff_t n) {
   return cf_sum_ordered(v, n / 2) + cf_sum_ordered(v + n / 2, n - n / 2);
 }
 
-CF_CLONES static double sum_row(const int n, const cf_real *f) {
+CF_CLONES double cf_sweep_row_sum(const int n, const cf_real *f) {
   double lane[CF_SUM_LANES] = {0};
   int i = 0;
   for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
@@ -31,7 +31,7 @@ cf_range cf_sweep_range(const cf_box *b, const int threads, const cf_real *f, do
       least = row[i] < least ? row[i] : least;
       largest = row[i] > largest ? row[i] : largest;
     }
-    rows[r] = sum_row(b->n[0], row);
+    rows[r] = cf_sweep_row_sum(b->n[0], row);
     rows[count + r] = (double)least;
     rows[2 * count + r] = (double)largest;
   }

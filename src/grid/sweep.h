@@ -30,7 +30,7 @@
 
 #include <stddef.h>
 
-#include "grid/box.h"
+#include "grid/field.h"
 
 #define CF_PRAGMA(text) _Pragma(#text)
 
@@ -86,6 +86,16 @@ static inline int cf_sweep_threads(const cf_box *b, const int threads) {
   CF_PRAGMA(omp parallel for schedule(static) num_threads(cf_sweep_threads(b, threads))) \
   for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
 
+/* The same over the rows of faces of axis a, the high wall's included; a row has cf_box_extent(b, 0, a) of them. */
+#define CF_PARALLEL_FACE_ROWS(b, threads, a, r)                                          \
+  CF_PRAGMA(omp parallel for schedule(static) num_threads(cf_sweep_threads(b, threads))) \
+  for (ptrdiff_t r = 0; r < (ptrdiff_t)cf_box_extent(b, 1, a) * cf_box_extent(b, 2, a); ++r)
+
+static inline ptrdiff_t cf_box_face_row(const cf_box *b, const int a, const ptrdiff_t r) {
+  const int rows = cf_box_extent(b, 1, a);
+  return (r % rows) * b->stride[1] + (r / rows) * b->stride[2];
+}
+
 /* Partial sums of a row keep this many lanes apart and join them as a fixed tree. */
 #define CF_SUM_LANES 8
 
@@ -95,6 +105,9 @@ static inline double cf_sum_lanes(const double s[CF_SUM_LANES]) {
 
 /* The sum of v[0..n-1] by halves: the order depends on n alone. */
 double cf_sum_ordered(const double *v, ptrdiff_t n);
+
+/* The sum of a row, in lanes. */
+double cf_sweep_row_sum(int n, const cf_real *f);
 
 /* Sum, least and largest of a cell field over the cells of the box. `rows` holds 3 doubles a row of the box. */
 typedef struct cf_range {

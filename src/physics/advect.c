@@ -36,7 +36,8 @@ struct cf_advect {
 typedef struct moved {
   int component, count[3];
   cf_ghost ghost[3][2];
-  bool mass; /* flux form: the sum is kept */
+  const double *inflow[3][2]; /* CF_GHOST_INFLOW: what comes in, a value for each volume at the wall */
+  bool mass;                  /* flux form: the sum is kept */
   cf_real *at;
 } moved;
 
@@ -147,7 +148,7 @@ static void carry(cf_advect *a, const moved *m, const int substep, cf_through *t
     s.mass = m->mass && d == dim - 1;
     for (int side = 0; side < 2; ++side) {
       s.ghost[side] = m->ghost[s.axis][side];
-      s.inflow[side] = a->walls.at[s.axis][side];
+      s.inflow[side] = m->inflow[s.axis][side];
     }
     const bool in_place = dim == 3 && s.axis == 0;
     s.to = in_place ? (cf_real *)s.from : s.from == m->at ? a->work.at : m->at;
@@ -177,7 +178,7 @@ static void reconstruct(cf_advect *a, const moved *m, cf_through *through) {
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
       s.ghost[axis][side] = m->ghost[axis][side];
-      s.inflow[axis][side] = a->walls.at[axis][side];
+      s.inflow[axis][side] = m->inflow[axis][side];
     }
   double passed[2] = {0, 0};
   for (int stage = 0; stage < 3; ++stage) {
@@ -206,7 +207,8 @@ static void trace(cf_advect *a, const moved *m) {
   for (int axis = 0; axis < b->dim; ++axis) {
     t.wrap[axis] = a->wrap[axis];
     for (int side = 0; side < 2; ++side) {
-      if (m->ghost[axis][side] == CF_GHOST_INFLOW) t.inflow[axis][side] = a->walls.at[axis][side];
+      if (m->ghost[axis][side] == CF_GHOST_INFLOW && m->component == CF_CENTRES)
+        t.inflow[axis][side] = m->inflow[axis][side];
       halo.rule[axis][side] = t.wrap[axis] ? CF_HALO_WRAP : CF_HALO_COPY;
     }
   }
@@ -266,7 +268,10 @@ cf_status cf_advect_cell(cf_advect *a, const cf_walls *walls, const cf_cell phi,
   const int *n = a->grid->box.n;
   moved m = {.component = CF_CENTRES, .count = {n[0], n[1], n[2]}, .mass = true, .at = phi.at};
   for (int axis = 0; axis < 3; ++axis)
-    for (int side = 0; side < 2; ++side) m.ghost[axis][side] = ghost_of_cells(walls->kind[axis][side]);
+    for (int side = 0; side < 2; ++side) {
+      m.ghost[axis][side] = ghost_of_cells(walls->kind[axis][side]);
+      m.inflow[axis][side] = a->walls.at[axis][side];
+    }
   take_walls(a, walls);
   for (int substep = 0; substep < a->substeps; ++substep) {
     cf_wall_values_sample(&a->walls, a->time + (substep + 0.5) * a->dt);
@@ -323,4 +328,29 @@ cf_status cf_advect_face(cf_advect *a, const cf_walls *walls, const cf_flux_rate
   }
   if (stretched) stretch(a, walls, a->dt / 2, q);
   return CF_OK;
+}
+
+/* --- the velocity itself ------------------------------------------------------------------------------ */
+
+/* Through a wall that lets in comes what its inlet says; through an open one what stands still outside. */
+static cf_ghost ghost_of_velocity(const cf_flow_walls *w, const int axis, const int side,
+                                  const bool own_axis) {
+  if (w->kind[axis][side] == CF_FLOW_PERIODIC) return CF_GHOST_WRAP;
+  if (w->kind[axis][side] == CF_FLOW_OPEN || w->lets_in[axis][side]) return CF_GHOST_INFLOW;
+  return own_axis ? CF_GHOST_ODD : CF_GHOST_MIRROR;
+}
+
+void cf_advect_velocity(cf_advect *a, const cf_flow_walls *walls, const cf_face u) {
+  for (int substep = 0; substep < a->substeps; ++substep)
+    for (int c = 0; c < a->grid->box.dim; ++c) {
+      moved m = {.component = c, .mass = true, .at = u.at[c]};
+      for (int axis = 0; axis < 3; ++axis) {
+        m.count[axis] = cf_flow_count(walls, axis, c);
+        for (int side = 0; side < 2; ++side) {
+          m.ghost[axis][side] = ghost_of_velocity(walls, axis, side, axis == c);
+          m.inflow[axis][side] = walls->value[axis][side][c];
+        }
+      }
+      carry_component(a, &m, substep);
+    }
 }

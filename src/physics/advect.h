@@ -1,13 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
  * What a moving medium carries along: cf_advect_* of cattaneo.h, with the equations and what each scheme
- * promises. Nothing more is known outside advect.c.
+ * promises; and the move of a velocity by itself, for models.
  */
 #ifndef CF_PHYSICS_ADVECT_H
 #define CF_PHYSICS_ADVECT_H
 
 #include "base/walls.h"
 #include "grid/field.h"
+#include "grid/flow_walls.h"
 #include "grid/grid.h"
+
+/* u_t + div(v u) = 0, component by component on the volumes around their faces, over the step begun; v is the
+ * velocity that was set, and u another field. The normal velocity of closed walls must be put right afterwards
+ * (cf_flow_walls_hold). The sum of every component changes by what passes walls alone (CF_ADVECT_PPM, _WENO5). */
+void cf_advect_velocity(cf_advect *a, const cf_flow_walls *walls, cf_face u);
 
 #endif
