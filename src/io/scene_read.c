@@ -125,6 +125,24 @@ const char *cf_config_folder(const cf_config *config) { return config->folder; }
 static cf_status read_record(cf_reader *reader, const cf_param_table *table, const cf_node *node,
                              char *record);
 
+/* The default of a list of numbers, "[1e-3, 3e-3]". */
+static cf_status read_default_list(cf_reader *reader, const cf_param *param, const cf_node *near,
+                                   char *record) {
+  cf_node entry[3], list = {.kind = CF_NODE_LIST, .place = near->place, .first = entry};
+  char text[128];
+  snprintf(text, sizeof text, "%s", cf_param_default(param));
+  for (char *at = text + strspn(text, "[, ]"); *at != '\0' && list.count < 3;) {
+    const size_t n = strcspn(at, ",]");
+    entry[list.count] = (cf_node){.kind = CF_NODE_SCALAR, .place = near->place, .text = at};
+    if (list.count > 0) entry[list.count - 1].next = &entry[list.count];
+    ++list.count;
+    at += n;
+    if (*at != '\0') *at++ = '\0';
+    at += strspn(at, "[, ]");
+  }
+  return cf_value_read(reader, param, &list, record + param->offset);
+}
+
 /* A row that nothing was written for. */
 static cf_status read_default(cf_reader *reader, const cf_param *param, const cf_node *near, char *record) {
   cf_node node = {.kind = CF_NODE_SCALAR, .place = near->place, .text = cf_param_default(param)};
@@ -136,6 +154,8 @@ static cf_status read_default(cf_reader *reader, const cf_param *param, const cf
   if (param->fallback == CF_REQUIRED) return cf_reader_fail(reader, near, "%s is missing", reader->path);
   if (param->type == CF_PARAM_number && node.text == NULL) *(double *)(void *)(record + param->offset) = NAN;
   if (node.text == NULL) return CF_OK;
+  if (node.text[0] == '[' && param->type != CF_PARAM_words)
+    return read_default_list(reader, param, near, record);
   return cf_value_read(reader, param, &node, record + param->offset);
 }
 

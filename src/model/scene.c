@@ -43,6 +43,9 @@ CF_PARAM_TABLE(cf_scene_preview, CF_PREVIEW_TABLE)
 #define CF_PARAM_STRUCT cf_scene_output
 CF_PARAM_TABLE(cf_scene_output, CF_OUTPUT_TABLE)
 #undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_snowfall
+CF_PARAM_TABLE(cf_scene_snowfall, CF_SNOWFALL_TABLE)
+#undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene
 CF_PARAM_TABLE(cf_scene, CF_SCENE_TABLE)
 #undef CF_PARAM_STRUCT

@@ -21,10 +21,11 @@
 #include "base/param.h"
 #include "base/status.h"
 #include "cattaneo.h"
+#include "model/snowfall_keys.h"
 
 /* --- words: W(UPPER, as a scene writes it) ---------------------------------------------------- */
 
-#define CF_MODEL_WORDS(W) W(TRACER, tracer)
+#define CF_MODEL_WORDS(W) W(TRACER, tracer) W(SNOWFALL, snowfall)
 #define CF_SCHEME_WORDS(W) \
   W(DEFAULT, default) W(PAPER, paper) W(SDIRK2, sdirk2) W(LEAPFROG, leapfrog) W(WAVE, wave)
 #define CF_SWITCH_WORDS(W) W(OFF, off) W(ON, on)
@@ -108,7 +109,10 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(cfl, number, "0.5", "", "(0, inf)",                                                                     \
     "With dt: auto the step is cfl times the smallest limit of the scheme: h/|u|, h/c")                     \
   P(frames, number, "0", "1/s", "[0, inf)",                                                                 \
-    "Output frames per unit of time; 0: only the first and the last state")
+    "Output frames per unit of time; 0: only the first and the last state")                                 \
+  P(retry, integer, "0", "", "[0, 30]",                                                                     \
+    "After a value that is not finite (or a stalled solve with on_stall: stop): how often the run may go "  \
+    "back to a checkpoint, each time one further, at last to the start, and try again with half the step")
 
 #define CF_DIFFUSION_TABLE(P, R)                                                                             \
   P(k, profile, "0", "m^2/s", "[0, inf)", "Diffusivity k of eqs 7 to 10; an expression in x, y, z")          \
@@ -212,7 +216,7 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(cattaneo, integer, CF_REQUIRED, "", "", "Version of the scene format: 1")            \
   P(title, text, "", "", "", "A line about the scene")                                   \
   P(model, word, CF_REQUIRED, "", CF_WORDS(CF_MODEL_WORDS),                              \
-    "What is computed: tracer (scalars in a given flow)")                                \
+    "What is computed: tracer (scalars in a given flow), snowfall (flakes in the wind)") \
   P(let, constants, CF_NONE, "", "",                                                     \
     "Names for numbers, for use in expressions and wherever a number stands")            \
   R(record, domain, cf_scene_domain, "The box and its cells")                            \
@@ -224,6 +228,7 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(velocity, functions, "0", "m/s", "",                                                 \
     "The flow, one expression in x, y, z, t an axis, evaluated at the faces")            \
   R(list, sources, cf_scene_source, "What is added to fields, or holds them")            \
+  R(record, snowfall, cf_scene_snowfall, "Flakes falling, of model snowfall")            \
   R(record, solver, cf_scene_solver, "The linear solver")                                \
   R(record, output, cf_scene_output, "What is written, and how often")
 
