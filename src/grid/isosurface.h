@@ -10,8 +10,8 @@
 
 typedef struct cf_isosurface {
   double level;
-  bool below;          /* inside is where the field is below the level (a signed distance), else where it is above */
-  bool caps;           /* close it with a face where inside meets a wall; else it ends at the outermost centres */
+  bool below; /* inside is where the field is below the level (a signed distance), else where it is above */
+  bool caps;  /* close it with a face where inside meets a wall; else it ends at the outermost centres */
   int low[3], high[3]; /* look at cells low <= (i, j, k) < high only; zeroed: at all */
 } cf_isosurface;
 
