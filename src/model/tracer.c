@@ -10,62 +10,149 @@
  * One step is Strang's: half a move with the flow, diffusion, half a move (each half with the velocity at its
  * middle); `scheme: paper` takes Lie's, the whole move with the old velocity and then eqs 13 to 18.
  *
- * The flow does not know of the scalars: for that there is another model.
+ * The flow does not know of the scalars: for that there is another model (flow.c).
  */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "grid/sweep.h"
-#include "model/tracer_part.h"
+#include "base/mem.h"
+#include "grid/wall.h"
+#include "model/scalars.h"
+
+typedef struct cf_tracer {
+  cf_scalars scalars;
+  bool velocity_in_time;
+  double through_walls; /* largest velocity that stood on an insulated wall */
+  cf_face u;
+} cf_tracer;
+
+/* --- the velocity ----------------------------------------------------------------------------------------- */
+
+static const cf_function *velocity_of(const cf_scene *scene, const int axis) {
+  return &scene->velocity.axis[scene->velocity.count > 1 ? axis : 0];
+}
+
+/* Sets u.n = 0 on the insulated walls of the domain; returns the largest value that stood there. */
+static double close_walls(const cf_tracer *m) {
+  const cf_box *box = &m->scalars.grid->box;
+  double largest = 0;
+  for (int a = 0; a < box->dim; ++a)
+    for (int side = 0; side < 2; ++side) {
+      if (m->scalars.scene->domain.walls.walls.kind[a][side] != CF_WALL_INSULATED) continue;
+      const cf_wall_side w = cf_wall_side_of(box, a, side);
+      for (int i_c = 0; i_c < w.n_c; ++i_c)
+        for (int i_b = 0; i_b < w.n_b; ++i_b) {
+          cf_real *u = &m->u.at[a][cf_wall_cell(box, &w, i_b, i_c) + (side == 0 ? 0 : w.outward)];
+          largest = CF_MAX(largest, fabs((double)*u));
+          *u = 0;
+        }
+    }
+  return largest;
+}
+
+static cf_status set_velocity(cf_tracer *m, const double t) {
+  const cf_grid *g = m->scalars.grid;
+  for (int a = 0; a < g->box.dim; ++a)
+    CF_TRY(cf_grid_sample(g, &velocity_of(m->scalars.scene, a)->fn, a, t, m->u.at[a]));
+  m->through_walls = close_walls(m);
+  return cf_scalars_set_velocity(&m->scalars, m->u);
+}
+
+static cf_status make_velocity(cf_tracer *m) {
+  const cf_scene *scene = m->scalars.scene;
+  bool moves = false;
+  for (int a = 0; a < m->scalars.grid->box.dim; ++a) {
+    const cf_fn *f = &velocity_of(scene, a)->fn;
+    moves = moves || !cf_fn_is_constant(f) || f->value != 0;
+    m->velocity_in_time = m->velocity_in_time || f->in_time;
+  }
+  if (!moves) return CF_OK;
+  CF_TRY(cf_face_create(&m->u, &m->scalars.grid->box));
+  CF_TRY(cf_scalars_carry(&m->scalars, -1));
+  return set_velocity(m, 0);
+}
+
+static cf_status register_velocity(const cf_tracer *m, cf_registry *r) {
+  if (!m->scalars.moves) return CF_OK;
+  CF_TRY(cf_scalars_register_moves(&m->scalars, r));
+  return cf_registry_add_face(r, "velocity", "m/s", m->u);
+}
+
+/* A scalar's insulated wall in the way of the flow would pile it up without end. */
+static cf_status check_walls(const cf_tracer *m, const cf_scalar *s) {
+  const cf_box *box = &m->scalars.grid->box;
+  if (!m->scalars.moves) return CF_OK;
+  for (int a = 0; a < box->dim; ++a)
+    for (int side = 0; side < 2; ++side) {
+      if (s->walls.kind[a][side] != CF_WALL_INSULATED) continue;
+      const cf_wall_side w = cf_wall_side_of(box, a, side);
+      for (int i_c = 0; i_c < w.n_c; ++i_c)
+        for (int i_b = 0; i_b < w.n_b; ++i_b)
+          if (m->u.at[a][cf_wall_cell(box, &w, i_b, i_c) + (side == 0 ? 0 : w.outward)] != 0) {
+            char key[2 * CF_NAME_MAX];
+            snprintf(key, sizeof key, "fields.%s.walls", s->name);
+            return cf_scene_fail_at(m->scalars.scene, key,
+                                    "the %c%c wall of %s is insulated, but the flow passes through it",
+                                    "xyz"[a], side == 0 ? '-' : '+', s->name);
+          }
+    }
+  return CF_OK;
+}
+
+/* --- making one ------------------------------------------------------------------------------------------- */
+
+static double tracer_natural_dt(const void *model, const double t) {
+  (void)t;
+  const cf_tracer *m = model;
+  double rate = 0;
+  for (int s = 0; s < CF_ADVECT_SCHEMES; ++s)
+    if (m->scalars.by_scheme[s] != NULL) rate = CF_MAX(rate, cf_advect_rate(m->scalars.by_scheme[s]));
+  return cf_scalars_natural_dt(&m->scalars, rate);
+}
+
+static cf_status make(cf_tracer *m, const cf_scene *scene, cf_registry *r) {
+  CF_TRY(cf_scalars_create(&m->scalars, scene, r->grid));
+  CF_TRY(make_velocity(m));
+  CF_TRY(cf_scalars_make(&m->scalars, isnan(scene->time.dt) ? tracer_natural_dt(m, 0) : scene->time.dt, r));
+  CF_TRY(register_velocity(m, r));
+  for (int i = 0; i < m->scalars.count; ++i) CF_TRY(check_walls(m, &m->scalars.item[i]));
+  return CF_OK;
+}
+
+static void tracer_destroy(void *model) {
+  cf_tracer *m = model;
+  if (m == NULL) return;
+  cf_face_destroy(&m->u, &m->scalars.grid->box);
+  cf_scalars_destroy(&m->scalars);
+  cf_free(m);
+}
+
+static cf_status tracer_create(void **model, const cf_scene *scene, cf_registry *registry) {
+  cf_tracer *m;
+  CF_TRY(CF_NEW(&m, 1));
+  m->scalars.grid = registry->grid;
+  const cf_status s = make(m, scene, registry);
+  if (s != CF_OK) {
+    tracer_destroy(m);
+    return s;
+  }
+  *model = m;
+  return CF_OK;
+}
 
 /* --- a step ----------------------------------------------------------------------------------------------- */
-
-static cf_flux_rate rate_of(const cf_tracer_scalar *s) {
-  if (s->paper && !s->scene->given.flux_rate) return CF_RATE_MATERIAL;
-  if (s->scene->flux_rate == CF_SCENE_FLUX_RATE_MATERIAL) return CF_RATE_MATERIAL;
-  return s->scene->flux_rate == CF_SCENE_FLUX_RATE_CONSERVATIVE ? CF_RATE_CONSERVATIVE : CF_RATE_OBJECTIVE;
-}
-
-static cf_status move_scalar(cf_advect *a, cf_tracer_scalar *s) {
-  cf_through through = {0, 0};
-  CF_TRY(cf_advect_cell(a, &s->walls, s->phi, &through));
-  s->ledger.entered += through.entered;
-  s->ledger.left += through.left;
-  if (!s->has_memory) return CF_OK;
-  if (s->plan.scalar_form) return cf_advect_cell(a, &s->memory_walls, s->s, NULL);
-  if (s->scene->flux_rate == CF_SCENE_FLUX_RATE_PARTIAL) return CF_OK; /* Appendix A's pitfall */
-  return cf_advect_face(a, &s->walls, rate_of(s), s->q);
-}
 
 /* Every scalar that is (not) the paper's moves over [t, t + dt] with the velocity of t_velocity. */
 static cf_status move(cf_tracer *m, const bool paper, const double t, const double dt,
                       const double t_velocity, cf_step_report *report) {
-  if (!m->moves) return CF_OK;
-  if (m->velocity_in_time) CF_TRY(cf_tracer_set_velocity(m, t_velocity));
-  bool begun[CF_TRACER_ADVECT_SCHEMES] = {false};
-  for (int i = 0; i < m->count; ++i) {
-    cf_tracer_scalar *s = &m->scalar[i];
-    if (s->paper != paper) continue;
-    const cf_advect_scheme scheme = cf_tracer_advection(m, s);
-    if (!begun[scheme]) CF_TRY(cf_advect_begin(m->by_scheme[scheme], t, dt));
-    begun[scheme] = true;
-    CF_TRY(move_scalar(m->by_scheme[scheme], s));
-  }
+  bool begun[CF_ADVECT_SCHEMES] = {false};
+  if (!m->scalars.moves) return CF_OK;
+  if (m->velocity_in_time) CF_TRY(set_velocity(m, t_velocity));
+  CF_TRY(cf_scalars_move(&m->scalars, paper, t, dt, begun));
   if (m->through_walls > 0 && report->warning[0] == '\0')
     snprintf(report->warning, sizeof report->warning,
              "the velocity passes through insulated walls (up to %g m/s): set to 0 there", m->through_walls);
-  return CF_OK;
-}
-
-static cf_status diffuse(cf_tracer_scalar *s, const double t, const double dt, cf_step_report *report) {
-  cf_solve_report one;
-  if (s->plan.scalar_form) {
-    CF_TRY(cf_diffuse_step_scalar(s->diffuse, t, dt, s->phi, s->s, &s->ledger, &one));
-  } else {
-    CF_TRY(cf_diffuse_step(s->diffuse, t, dt, s->phi, s->q, &s->ledger, &one));
-    cf_sources_hold_flux(s->sources, t + dt, s->q);
-  }
-  cf_step_report_add(report, CF_STAGE_DIFFUSE, &one);
   return CF_OK;
 }
 
@@ -75,7 +162,7 @@ static cf_status tracer_step(void *model, const double t, const double dt, cf_st
   CF_TRY(move(m, true, t, dt, t, report));
   CF_TRY(move(m, false, t, dt / 2, t + dt / 4, report));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
-  for (int i = 0; i < m->count; ++i) CF_TRY(diffuse(&m->scalar[i], t, dt, report));
+  CF_TRY(cf_scalars_diffuse(&m->scalars, t, dt, report));
   clock = cf_stage_end(report, CF_STAGE_DIFFUSE, clock);
   CF_TRY(move(m, false, t + dt / 2, dt / 2, t + 3 * dt / 4, report));
   cf_stage_end(report, CF_STAGE_ADVECT, clock);
@@ -85,43 +172,25 @@ static cf_status tracer_step(void *model, const double t, const double dt, cf_st
 /* The velocity has been read back as the last step had it: the length of the next one may hang on that. */
 static cf_status tracer_restored(void *model) {
   cf_tracer *m = model;
-  for (int s = 0; s < CF_TRACER_ADVECT_SCHEMES; ++s)
-    if (m->by_scheme[s] != NULL)
-      CF_TRY(cf_advect_set_velocity(m->by_scheme[s], m->u, &m->scene->domain.walls.walls));
-  return CF_OK;
+  return m->scalars.moves ? cf_scalars_set_velocity(&m->scalars, m->u) : CF_OK;
 }
+
+/* --- telling ---------------------------------------------------------------------------------------------- */
 
 static bool tracer_describe(const void *model, const int line, char *text, const size_t size) {
-  const cf_tracer *m = model;
-  if (line >= m->count) return false;
-  const cf_tracer_scalar *s = &m->scalar[line];
-  snprintf(text, size, "%s: %s%s", s->name, s->plan.why,
-           s->plan.scalar_form ? "; the flux is kept as its divergence" : "");
-  return true;
+  return cf_scalars_describe(&((const cf_tracer *)model)->scalars, line, text, size);
 }
 
-/* --- metrics ---------------------------------------------------------------------------------------------- */
-
 static int tracer_metric_names(const void *model, cf_metric *names) {
-  static const char *const per_scalar[4] = {"sum", "min", "max", "error"};
-  const cf_tracer *m = model;
-  for (int i = 0; i < m->count; ++i)
-    for (int c = 0; c < 4; ++c)
-      snprintf(names[4 * i + c].name, CF_NAME_MAX, "%s_%.*s", per_scalar[c], CF_NAME_MAX - 8,
-               m->scalar[i].name);
-  return 4 * m->count;
+  return cf_scalars_metric_names(&((const cf_tracer *)model)->scalars, names);
 }
 
 static void tracer_metrics(const void *model, double *values) {
-  const cf_tracer *m = model;
-  for (int i = 0; i < m->count; ++i) {
-    const cf_tracer_scalar *s = &m->scalar[i];
-    const cf_range range = cf_sweep_range(&m->grid->box, m->grid->threads, s->phi.at, m->rows);
-    values[4 * i] = range.sum * cf_grid_volume(m->grid);
-    values[4 * i + 1] = range.min;
-    values[4 * i + 2] = range.max;
-    values[4 * i + 3] = cf_ledger_error(&s->ledger, cf_diffuse_content(s->diffuse, s->phi));
-  }
+  cf_scalars_metrics(&((const cf_tracer *)model)->scalars, values);
+}
+
+static double tracer_memory(const cf_scene *scene) {
+  return cf_scalars_bytes(scene, scene->dim + cf_scalars_memory(scene)); /* the velocity, and the rest */
 }
 
 static const char *const tracer_keys[] = {"diffusion", "advection", "fields", "velocity", "sources", NULL};
@@ -135,11 +204,11 @@ const cf_model cf_model_tracer = {
     .summary = "scalars with C-F diffusion in a prescribed flow",
     .keys = tracer_keys,
     .shows = tracer_shows,
-    .memory = cf_tracer_memory,
-    .create = cf_tracer_create,
-    .destroy = cf_tracer_destroy,
+    .memory = tracer_memory,
+    .create = tracer_create,
+    .destroy = tracer_destroy,
     .restored = tracer_restored,
-    .natural_dt = cf_tracer_natural_dt,
+    .natural_dt = tracer_natural_dt,
     .describe = tracer_describe,
     .step = tracer_step,
     .metric_names = tracer_metric_names,

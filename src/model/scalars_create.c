@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Making the scalars: what they are, how each will be computed (plan.h), and the state they live in.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "grid/sweep.h"
+#include "grid/wall.h"
+#include "model/scalars.h"
+
+/* --- memory ----------------------------------------------------------------------------------------------- */
+
+static bool has_source(const cf_scene *scene, const bool held) {
+  for (int i = 0; i < scene->sources.count; ++i)
+    if (scene->sources.item[i].given.value == held) return true;
+  return false;
+}
+
+double cf_scalars_memory(const cf_scene *scene) {
+  const double dim = scene->dim, coarse = dim == 3 ? 1.0 / 7 : 1.0 / 3;
+  double fields = dim + 4; /* advection's scratch */
+  for (int f = 0; f < scene->fields.count; ++f) {
+    const cf_scene_field *field = &scene->fields.item[f];
+    if (cf_scene_name_is_flux(field->name)) continue;
+    const bool varies =
+        !cf_fn_is_constant(&field->diffusion.k.fn) || field->diffusion.capacity.fn.eval != NULL;
+    fields += 1 + dim;            /* phi, q */
+    fields += 2 + 5 + 3 * coarse; /* phi~ and right side; the solver's vectors; coarse levels */
+    if (varies) fields += 2 * dim + 2 + (dim + 1) * coarse;
+    if (has_source(scene, false)) fields += 1 + dim;
+    if (has_source(scene, true)) fields += 3 + (dim + 1) * (1 + coarse);
+  }
+  return fields;
+}
+
+double cf_scalars_bytes(const cf_scene *scene, const double fields) {
+  int n[3] = {1, 1, 1};
+  cf_box box;
+  for (int a = 0; a < scene->dim; ++a) n[a] = (int)scene->domain.cells.value[a];
+  if (cf_box_init(&box, scene->dim, n, CF_HALO) != CF_OK) return INFINITY;
+  return fields * (double)box.size * sizeof(cf_real) + 64e6;
+}
+
+/* --- the plan --------------------------------------------------------------------------------------------- */
+
+/* The largest k/C, as far as it can be had: what is wrong with k or C is told when diffusion is made. */
+static cf_status find_diffusivity(const cf_scalars *m, cf_scalar *s) {
+  const cf_box *box = &m->grid->box;
+  double k = s->scene->k.fn.value, c = s->scene->capacity.fn.value;
+  if (!cf_fn_is_constant(&s->scene->k.fn)) {
+    CF_TRY(cf_grid_sample(m->grid, &s->scene->k.fn, CF_CENTRES, 0, s->phi.at));
+    k = cf_sweep_range(box, m->grid->threads, s->phi.at, m->rows).max;
+  }
+  if (!cf_fn_is_constant(&s->scene->capacity.fn)) {
+    CF_TRY(cf_grid_sample(m->grid, &s->scene->capacity.fn, CF_CENTRES, 0, s->phi.at));
+    c = cf_sweep_range(box, m->grid->threads, s->phi.at, m->rows).min;
+  }
+  s->D = k > 0 && c > 0 && isfinite(k / c) ? k / c : 0;
+  return CF_OK;
+}
+
+static void make_plans(cf_scalars *s, const double dt) {
+  for (int i = 0; i < s->count; ++i)
+    cf_plan_make(s->scene, s->item[i].field, s->item[i].D, cf_plan_step(s->scene, dt), &s->item[i].plan);
+}
+
+/* --- each ------------------------------------------------------------------------------------------------- */
+
+/* No flux stands on an insulated wall, whatever an expression says. */
+static void close_flux(const cf_grid *g, const cf_walls *walls, const cf_face q) {
+  for (int a = 0; a < g->box.dim; ++a)
+    for (int side = 0; side < 2; ++side) {
+      if (walls->kind[a][side] != CF_WALL_INSULATED) continue;
+      const cf_wall_side w = cf_wall_side_of(&g->box, a, side);
+      for (int i_c = 0; i_c < w.n_c; ++i_c)
+        for (int i_b = 0; i_b < w.n_b; ++i_b)
+          q.at[a][cf_wall_cell(&g->box, &w, i_b, i_c) + (side == 0 ? 0 : w.outward)] = 0;
+    }
+}
+
+static cf_status initial_flux(const cf_scalars *m, cf_scalar *s) {
+  const int f = cf_scene_field_index(m->scene, s->flux);
+  if (f < 0) return CF_OK;
+  const cf_param_profiles *initial = &m->scene->fields.item[f].initial;
+  for (int a = 0; a < m->grid->box.dim; ++a)
+    CF_TRY(cf_grid_sample(m->grid, &initial->axis[initial->count > 1 ? a : 0].fn, a, 0, s->q.at[a]));
+  close_flux(m->grid, &s->walls, s->q);
+  return CF_OK;
+}
+
+static void describe_scalar(const cf_scalars *m, const int field, cf_scalar *s) {
+  const cf_scene_field *f = &m->scene->fields.item[field];
+  s->field = field;
+  snprintf(s->name, sizeof s->name, "%s", f->name);
+  cf_plan_flux_name(m->scene, field, s->flux);
+  s->scene = &f->diffusion;
+  s->walls = s->carried = s->carried_flux = f->walls.walls;
+  for (int a = 0; a < m->grid->box.dim; ++a)
+    for (int side = 0; side < 2; ++side)
+      if (s->walls.kind[a][side] == CF_WALL_VALUE) s->carried_flux.kind[a][side] = CF_WALL_OPEN;
+  s->paper = s->scene->scheme == CF_SCENE_SCHEME_PAPER;
+  s->has_memory = s->scene->tau > 0;
+}
+
+static cf_status make_diffuse(const cf_scalars *m, cf_scalar *s) {
+  const cf_scene *scene = m->scene;
+  const cf_scene_diffusion *d = s->scene;
+  const cf_diffuse_params p = {
+      .k = d->k.fn,
+      .capacity = d->capacity.fn,
+      .tau = d->tau,
+      .f_t = d->f_t,
+      .scheme = s->plan.scheme,
+      .solver = {scene->solver.tolerance, (int)scene->solver.max_iterations},
+      .levels = (int)scene->solver.levels,
+      .front_filter = s->plan.front_filter,
+      .positive = s->plan.positive,
+  };
+  cf_source acts;
+  CF_TRY(cf_sources_create(&s->sources, scene, m->grid, s->field, s->flux, &acts));
+  const cf_status made = cf_diffuse_create(&s->diffuse, m->grid, &s->walls, &p, &acts);
+  if (made != CF_BAD_ARGUMENT) return made;
+  char why[CF_SENTENCE_MAX], key[2 * CF_NAME_MAX];
+  snprintf(why, sizeof why, "%s", cf_status_sentence());
+  snprintf(key, sizeof key, "fields.%s.diffusion", s->name);
+  return cf_scene_fail_at(scene, cf_scene_has(scene, key) ? key : "diffusion", "%s", why);
+}
+
+static cf_status register_scalar(cf_scalar *s, const char *unit, cf_registry *r) {
+  char name[CF_NAME_MAX + 8];
+  CF_TRY(cf_registry_add_cell(r, s->name, unit, s->phi));
+  snprintf(name, sizeof name, "div_%.*s", CF_NAME_MAX - 8, s->flux);
+  if (s->plan.scalar_form)
+    CF_TRY(cf_registry_add_cell(r, name, "", s->s));
+  else
+    CF_TRY(cf_registry_add_face(r, s->flux, "", s->q));
+  snprintf(name, sizeof name, "ledger_%.*s", CF_NAME_MAX - 8, s->name);
+  return cf_registry_add_numbers(r, name, "", &s->ledger.first, 3);
+}
+
+static cf_status make_scalar(const cf_scalars *m, cf_scalar *s, cf_registry *r) {
+  const cf_scene_field *f = &m->scene->fields.item[s->field];
+  if (s->plan.scalar_form)
+    CF_TRY(cf_cell_create(&s->s, &m->grid->box));
+  else
+    CF_TRY(cf_face_create(&s->q, &m->grid->box));
+  CF_TRY(make_diffuse(m, s));
+  CF_TRY(cf_grid_sample(m->grid, &f->initial.axis[0].fn, CF_CENTRES, 0, s->phi.at));
+  if (!s->plan.scalar_form) CF_TRY(initial_flux(m, s));
+  s->ledger.first = cf_diffuse_content(s->diffuse, s->phi);
+  return register_scalar(s, f->unit, r);
+}
+
+/* --- all -------------------------------------------------------------------------------------------------- */
+
+cf_status cf_scalars_create(cf_scalars *s, const cf_scene *scene, const cf_grid *g) {
+  s->scene = scene;
+  s->grid = g;
+  CF_TRY(CF_NEW(&s->rows, 3 * cf_box_rows(&g->box)));
+  CF_TRY(CF_NEW(&s->item, CF_MAX(1, scene->fields.count)));
+  for (int f = 0; f < scene->fields.count; ++f) {
+    if (cf_scene_name_is_flux(scene->fields.item[f].name)) continue;
+    if (s->count == CF_METRICS_MAX / CF_SCALAR_METRICS - 4)
+      return cf_scene_fail_at(scene, "fields", "more than %d scalars",
+                              CF_METRICS_MAX / CF_SCALAR_METRICS - 4);
+    describe_scalar(s, f, &s->item[s->count++]);
+  }
+  for (int i = 0; i < s->count; ++i) {
+    CF_TRY(cf_cell_create(&s->item[i].phi, &g->box));
+    CF_TRY(find_diffusivity(s, &s->item[i]));
+  }
+  return CF_OK;
+}
+
+void cf_scalars_open(cf_scalars *s, const int axis, const int side) {
+  for (int i = 0; i < s->count; ++i) {
+    cf_scalar *one = &s->item[i];
+    if (one->walls.kind[axis][side] == CF_WALL_INSULATED)
+      one->carried.kind[axis][side] = one->carried_flux.kind[axis][side] = CF_WALL_OPEN;
+  }
+}
+
+cf_status cf_scalars_make(cf_scalars *s, const double dt, cf_registry *r) {
+  make_plans(s, dt);
+  for (int i = 0; i < s->count; ++i) CF_TRY(make_scalar(s, &s->item[i], r));
+  return CF_OK;
+}
+
+void cf_scalars_destroy(cf_scalars *s) {
+  for (int i = 0; s->item != NULL && i < s->count; ++i) {
+    cf_scalar *one = &s->item[i];
+    cf_diffuse_destroy(one->diffuse);
+    cf_sources_destroy(one->sources);
+    cf_cell_destroy(&one->phi, &s->grid->box);
+    cf_cell_destroy(&one->s, &s->grid->box);
+    cf_face_destroy(&one->q, &s->grid->box);
+  }
+  for (int a = 0; a < CF_ADVECT_SCHEMES; ++a) cf_advect_destroy(s->by_scheme[a]);
+  cf_free(s->item);
+  cf_free(s->rows);
+}
