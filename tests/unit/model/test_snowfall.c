@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Model snowfall: its mass is all accounted for, it lands as often as it falls, and neither the number of threads nor
+ * a stop changes a bit.
+ */
+/* also in single precision */
+#include <string.h>
+
+#include "model/atlas.h"
+#include "scene_run.h"
+
+static const char *const atlas_text =
+    "{\"cattaneo_atlas\": 1, \"flakes\": [\n"
+    "{\"name\": \"star\", \"rgba\": \"a.png\", \"height\": \"b.png\", \"normal\": \"c.png\", \"pixels\": "
+    "[64, 64],\n"
+    " \"metres_per_pixel\": 1e-4, \"center\": [31.5, 31.5], \"radius\": 2e-3, \"area\": 4e-6,\n"
+    " \"mean_thickness\": 4e-5, \"height_scale\": 5e-5, \"mass\": 1.5e-7, \"symmetry\": 6},\n"
+    "{\"name\": \"plate\", \"rgba\": \"a.png\", \"height\": \"b.png\", \"normal\": \"c.png\", \"pixels\": "
+    "[64, 64],\n"
+    " \"metres_per_pixel\": 1e-4, \"center\": [31.5, 31.5], \"radius\": 1e-3, \"area\": 2e-6,\n"
+    " \"mean_thickness\": 4e-5, \"height_scale\": 5e-5, \"mass\": 7e-8}]}\n";
+
+static void open_snow(scene_run *r, const char *name, const char *more, const int threads) {
+  char text[2048];
+  snprintf(text, sizeof text,
+           "cattaneo: 1\nmodel: snowfall\ndomain: {size: [1, 1, 1], cells: [16, 16, 16]}\n"
+           "time: {end: 1}\nsnowfall:\n  atlas: atlas.json\n  stands_for: 50\n%s",
+           more);
+  const char *path = scene_path(name, text), *slash = strrchr(path, '/');
+  char folder[1024];
+  snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
+  file_write(folder, "atlas.json", atlas_text);
+  OK(cf_scene_read(&r->scene, path, 0, NULL));
+  OK(cf_sim_create(&r->sim, r->scene, threads));
+}
+
+static const char *const gusty = "  flakes: 400\n  wind: [0.5, 0.2, 0]\n  gust_strength: 0.4\n  slope: 500\n";
+
+static const cf_particles *set_of(const scene_run *r, const char *name) {
+  const cf_entry *e = cf_registry_find(&r->sim->registry, name);
+  assert_non_null(e);
+  return e->particles;
+}
+
+static void all_snow_is_accounted_for(void **state) {
+  (void)state;
+  scene_run r;
+  open_snow(&r, "snow_mass", gusty, 2);
+  OK(cf_sim_run(r.sim, INFINITY, NULL, NULL));
+  assert_true(scene_metric(&r, "in_air") == 400);
+  assert_true(scene_metric(&r, "landed") > 100);
+  BELOW(fabs(scene_metric(&r, "error_snow")), sizeof(cf_real) == 4 ? 1e-5 : 1e-13);
+  /* everything stays inside, sideways, and above what lies there */
+  const cf_particles *f = set_of(&r, "flakes");
+  for (int64_t i = 0; i < f->count; ++i)
+    for (int a = 0; a < 2; ++a) assert_true(f->attribute[0].at[a][i] >= 0 && f->attribute[0].at[a][i] <= 1);
+  scene_close(&r);
+}
+
+/* Without wind every flake falls at its own terminal speed, so that N v/H of them land in a second. */
+static void as_many_land_as_fall(void **state) {
+  (void)state;
+  scene_run r;
+  open_snow(&r, "snow_rate", "  flakes: 1500\n  flutter: 0\n  imperfection: 0\n  radius: [2e-3, 2e-3]\n", 2);
+  OK(cf_sim_run(r.sim, INFINITY, NULL, NULL));
+  const double v = scene_metric(&r, "mean_speed");
+  assert_true(v > 0.2 && v < 1.2);
+  CLOSE(scene_metric(&r, "landed"), 1500 * v, 4 * sqrt(1500 * v) + 0.03 * 1500 * v);
+  scene_close(&r);
+}
+
+static void expect_same(const scene_run *a, const scene_run *b, const char *name) {
+  const cf_particles *p = set_of(a, name), *q = set_of(b, name);
+  assert_true(p->count == q->count && p->attributes == q->attributes);
+  assert_memory_equal(p->id, q->id, (size_t)p->count * sizeof *p->id);
+  for (int n = 0; n < p->attributes; ++n)
+    for (int c = 0; c < p->attribute[n].components; ++c)
+      assert_memory_equal(p->attribute[n].at[c], q->attribute[n].at[c], (size_t)p->count * sizeof(cf_real));
+}
+
+static void threads_do_not_change_a_bit(void **state) {
+  (void)state;
+  scene_run one, three;
+  open_snow(&one, "snow_one", gusty, 1);
+  open_snow(&three, "snow_three", gusty, 3);
+  OK(cf_sim_run(one.sim, 0.6, NULL, NULL));
+  OK(cf_sim_run(three.sim, 0.6, NULL, NULL));
+  expect_same(&one, &three, "flakes");
+  expect_same(&one, &three, "settled");
+  expect_same(&one, &three, "ground");
+  scene_close(&one);
+  scene_close(&three);
+}
+
+static void saved_and_loaded_it_goes_on_to_the_same_bits(void **state) {
+  (void)state;
+  scene_run whole, again;
+  char path[1200];
+  open_snow(&whole, "snow_whole", gusty, 2);
+  snprintf(path, sizeof path, "%s/half.h5", cf_scene_folder(whole.scene));
+  while (cf_sim_step_count(whole.sim) < 40) OK(cf_sim_step(whole.sim, NULL));
+  OK(cf_sim_save(whole.sim, path));
+  while (cf_sim_step_count(whole.sim) < 80) OK(cf_sim_step(whole.sim, NULL));
+  OK(cf_sim_create(&again.sim, whole.scene, 1));
+  OK(cf_sim_load(again.sim, path));
+  while (cf_sim_step_count(again.sim) < 80) OK(cf_sim_step(again.sim, NULL));
+  expect_same(&whole, &again, "flakes");
+  expect_same(&whole, &again, "settled");
+  expect_same(&whole, &again, "ground");
+  cf_sim_destroy(again.sim);
+  scene_close(&whole);
+}
+
+static void bad_scenes_say_what_is_wrong(void **state) {
+  (void)state;
+  static const char *const cases[][2] = {
+      {"cattaneo: 1\nmodel: snowfall\ndomain: {size: [1, 1], cells: [8, 8]}\ntime: {end: 1}\nsnowfall: "
+       "{atlas: a}\n",
+       "snow falls in three dimensions"},
+      {"cattaneo: 1\nmodel: snowfall\ndomain: {size: [1, 1, 1], cells: [8, 8, 8]}\ntime: {end: 1}\n",
+       "snowfall.atlas is missing"},
+      {"cattaneo: 1\nmodel: snowfall\ndomain: {size: [1, 1, 1], cells: [8, 8, 8]}\ntime: {end: 1}\n"
+       "snowfall: {atlas: a, radius: [2e-3, 1e-3]}\n",
+       "the first must not be above the second"},
+      {"cattaneo: 1\nmodel: snowfall\ndomain: {size: [1, 1, 1], cells: [8, 8, 8]}\ntime: {end: 1}\n"
+       "snowfall: {atlas: a}\nvelocity: [0, 0, 0]\n",
+       "velocity is not a key of `model: snowfall`"}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+    cf_scene *scene;
+    assert_int_equal(cf_scene_read(&scene, scene_path("snow_bad", cases[i][0]), 0, NULL), CF_BAD_SCENE);
+    if (strstr(cf_status_sentence(), cases[i][1]) == NULL)
+      fail_msg("\"%s\" does not say: %s", cf_status_sentence(), cases[i][1]);
+  }
+}
+
+static void an_atlas_without_a_mass_is_told_with_its_place(void **state) {
+  (void)state;
+  cf_atlas *atlas;
+  const char *folder = folder_fresh("atlas_bad");
+  char path[1200];
+  snprintf(path, sizeof path, "%s/atlas.json", folder);
+  file_write(folder, "atlas.json", "{\"cattaneo_atlas\": 1, \"flakes\": [{\"name\": \"a\"}]}");
+  assert_int_equal(cf_atlas_read(&atlas, path), CF_BAD_SCENE);
+  assert_non_null(strstr(cf_status_sentence(), "atlas.json:1"));
+  file_write(folder, "atlas.json", "{\"cattaneo_atlas\": 1, \"flakes\": []}");
+  assert_int_equal(cf_atlas_read(&atlas, path), CF_BAD_SCENE);
+  assert_non_null(strstr(cf_status_sentence(), "without a flake"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(all_snow_is_accounted_for),
+                                     cmocka_unit_test(as_many_land_as_fall),
+                                     cmocka_unit_test(threads_do_not_change_a_bit),
+                                     cmocka_unit_test(saved_and_loaded_it_goes_on_to_the_same_bits),
+                                     cmocka_unit_test(bad_scenes_say_what_is_wrong),
+                                     cmocka_unit_test(an_atlas_without_a_mass_is_told_with_its_place)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
