@@ -11,20 +11,21 @@
 
 const cf_command cf_commands[] = {
     {"run", "SCENE.yaml", 1, 1,
-     BIT(OUTPUT) | BIT(SET) | BIT(THREADS) | BIT(UNTIL) | BIT(STEPS) | BIT(PRECISION) | BIT(PROGRESS) |
-         BIT(MEM_LIMIT) | BIT(FORCE) | BIT(HELP),
+     BIT(OUTPUT) | BIT(SET) | BIT(THREADS) | BIT(UNTIL) | BIT(STEPS) | BIT(WALL_LIMIT) | BIT(PRECISION) |
+         BIT(PROGRESS) | BIT(MEM_LIMIT) | BIT(FORCE) | BIT(HELP),
      "run a scene; write its pictures and data into a folder",
      "The folder gets run.yaml (the scene with every default filled in), metrics.csv (a line a step), a file "
      "and "
      "a picture a frame, checkpoints, and log.txt. Its name is printed on stdout. A folder that holds a run "
      "is "
      "left alone unless --force is given.\n"
-     "Ctrl-C, or a TERM or HUP signal, ends the run after the present step with a checkpoint; `resume` goes "
-     "on "
-     "from there as if nothing had been.\n"
+     "Ctrl-C, or a TERM or HUP signal, ends the run after the present step with a checkpoint, and "
+     "--wall-limit "
+     "does so in time; `resume` goes on from there as if nothing had been.\n"
      "  " CF_PROGRAM " run cone.yaml -o out/tau2 --set diffusion.tau=2",
      cf_run_command},
-    {"resume", "DIR", 1, 1, BIT(UNTIL) | BIT(THREADS) | BIT(PROGRESS) | BIT(HELP),
+    {"resume", "DIR", 1, 1,
+     BIT(UNTIL) | BIT(STEPS) | BIT(WALL_LIMIT) | BIT(THREADS) | BIT(PROGRESS) | BIT(MEM_LIMIT) | BIT(HELP),
      "go on with a run that was stopped, from its newest good checkpoint",
      "What was written after the checkpoint is cut and written again, to the same bits. Without a checkpoint "
      "the "

@@ -19,6 +19,7 @@ cf_session_options cf_drive_options(const cf_arguments *a, cf_teller *teller) {
       .until = a->until,
       .steps = a->steps,
       .memory = a->memory,
+      .seconds = a->seconds,
       .progress = cf_teller_progress,
       .say = cf_teller_say,
       .context = teller,

@@ -15,6 +15,7 @@
 #include "base/mem.h"
 #include "base/param.h"
 #include "base/real.h"
+#include "base/units.h"
 
 const cf_option cf_option_table[CF_OPTIONS] = {
 #define CF_OPTION_ROW(upper, name, letter, value, doc) {name, letter, value, doc},
@@ -60,6 +61,18 @@ cf_status cf_size_read(const char *text, double *bytes) {
     return cf_fail(CF_BAD_USAGE,
                    "%s: must be a number of bytes, or of K, M, G or T (powers of 1024), like 2G", text);
   return CF_OK;
+}
+
+cf_status cf_duration_read(const char *text, double *seconds) {
+  char *unit;
+  cf_unit_change change = {1, 0};
+  *seconds = strtod(text, &unit);
+  bool good = unit != text;
+  unit += strspn(unit, " ");
+  if (good && *unit != '\0') good = cf_units_change(unit, "s", &change) == CF_OK;
+  *seconds *= change.scale;
+  if (good && isfinite(*seconds) && *seconds > 0) return CF_OK;
+  return cf_fail(CF_BAD_USAGE, "%s: must be a time above 0, like 3600, 90 min or 2h", text);
 }
 
 static cf_status read_word(const char *name, const char *text, const char *words, int *index) {
@@ -133,6 +146,9 @@ static cf_status keep(cf_arguments *a, const int option, const char *value) {
     case CF_OPTION_MEM_LIMIT:
       if (cf_size_read(value, &a->memory) == CF_OK) break;
       return cf_fail(CF_BAD_USAGE, "--mem-limit %s", cf_status_sentence());
+    case CF_OPTION_WALL_LIMIT:
+      if (cf_duration_read(value, &a->seconds) == CF_OK) break;
+      return cf_fail(CF_BAD_USAGE, "--wall-limit %s", cf_status_sentence());
     case CF_OPTION_JSON:
       a->json = true;
       break;

@@ -25,6 +25,8 @@
   O(THREADS, "threads", 0, "N", "threads to use; left out: one a processor; the results are the same bits")   \
   O(UNTIL, "until", 0, "T", "stop at this simulated time, in s")                                              \
   O(STEPS, "steps", 0, "N", "stop after so many steps")                                                       \
+  O(WALL_LIMIT, "wall-limit", 0, "TIME",                                                                      \
+    "stop, with a checkpoint and exit code 130, before so much time of the clock has passed: 90 min, 2h, 3600") \
   O(PRECISION, "precision", 0, "single|double", "the precision of the fields; the sister program runs if need be") \
   O(PROGRESS, "progress", 0, "auto|plain|json|none",                                                          \
     "how progress is shown on stderr: auto is one line that is rewritten on a terminal and plain elsewhere; " \
@@ -75,6 +77,7 @@ typedef struct cf_arguments {
   double until;               /* s; 0: not given */
   int64_t steps;              /* 0: not given */
   double memory;              /* bytes; 0: not given */
+  double seconds;             /* of the clock; 0: not given */
   bool other;                 /* the other precision than this program's is asked for */
   bool force, json, manual, help;
   cf_progress_kind progress;
@@ -86,6 +89,9 @@ typedef struct cf_arguments {
  * it takes. Operands are moved behind the options. CF_BAD_USAGE. */
 cf_status cf_arguments_read(cf_arguments *a, int argc, char **argv, unsigned allowed);
 void cf_arguments_clear(cf_arguments *a);
+
+/* "90 min" in s; a plain number is in s. CF_BAD_USAGE. */
+cf_status cf_duration_read(const char *text, double *seconds);
 
 /* "512M" in bytes. CF_BAD_USAGE. */
 cf_status cf_size_read(const char *text, double *bytes);

@@ -152,9 +152,9 @@ void cf_teller_end(cf_teller *t) {
   t->open = false;
 }
 
-void cf_teller_say(void *context, const char *line) {
+void cf_teller_say(void *context, const cf_line_kind kind, const char *line) {
   cf_teller *t = context;
-  snprintf(t->said, sizeof t->said, "%s", line);
+  if (t->kind == CF_PROGRESS_NONE && kind == CF_LINE_NOTE) return;
   if (t->kind == CF_PROGRESS_JSON) {
     json_message("message", line);
     return;
@@ -168,7 +168,7 @@ void cf_teller_last(cf_teller *t, const char *event, const char *line) {
   cf_teller_end(t);
   if (t->kind == CF_PROGRESS_JSON)
     json_message(event, line);
-  else if (strcmp(line, t->said) != 0)
+  else
     fprintf(stderr, "%s\n", line);
 }
 

@@ -6,7 +6,7 @@
  *   a terminal  one line that is rewritten; other lines are put above it
  *   plain       a line at most once a second, for log files
  *   json        one object a line: {"event": "progress", ...}, also "message", "done", "stopped", "failed"
- *   none        messages only
+ *   none        warnings and failures only
  */
 #ifndef CF_APP_TELL_H
 #define CF_APP_TELL_H
@@ -24,7 +24,6 @@ typedef struct cf_teller {
   bool began;
   double told;                     /* wall-clock second of the last line */
   int64_t frame, step, first_step; /* of the last line; before the first step of this start */
-  char said[CF_SENTENCE_MAX];      /* the last line that was no progress: not said twice */
 } cf_teller;
 
 cf_teller cf_teller_begin(cf_progress_kind kind);
@@ -32,7 +31,7 @@ cf_teller cf_teller_begin(cf_progress_kind kind);
 /* Callbacks of cf_session_options, `context` a cf_teller. The first returns false once a signal has asked
  * for an end (app/stop.h). */
 bool cf_teller_progress(void *context, const cf_progress *p);
-void cf_teller_say(void *context, const char *line);
+void cf_teller_say(void *context, cf_line_kind kind, const char *line);
 
 /* Ends a line that stands open. */
 void cf_teller_end(cf_teller *t);

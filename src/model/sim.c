@@ -10,12 +10,12 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "grid/sweep.h"
 
 static cf_status register_clock(cf_sim *sim) {
   CF_TRY(cf_registry_add_numbers(&sim->registry, "time", "s", &sim->time, 1));
   CF_TRY(cf_registry_add_numbers(&sim->registry, "dt", "s", &sim->dt, 1));
   CF_TRY(cf_registry_add_counter(&sim->registry, "step", &sim->step));
+  if (sim->scene->time.retry > 0) CF_TRY(cf_registry_add_counter(&sim->registry, "retries", &sim->retries));
   return cf_registry_add_counter(&sim->registry, "frame", &sim->frame);
 }
 
@@ -127,25 +127,6 @@ int64_t cf_sim_step_count(const cf_sim *sim) { return sim->step; }
 /* --- a step -----------------------------------------------------------------------------------------------
  */
 
-static cf_status check_values(const cf_sim *sim, const char *name, const cf_real *values) {
-  int where[3];
-  if (cf_sweep_finite(&sim->grid.box, sim->grid.threads, values, where)) return CF_OK;
-  return cf_fail(CF_NOT_FINITE,
-                 "%s stopped being finite in cell (%d, %d, %d) in step %lld at t = %g s (dt = %g s): "
-                 "try a smaller dt, or look at the sources and expressions there",
-                 name, where[0], where[1], where[2], (long long)sim->step, sim->time, sim->dt);
-}
-
-static cf_status check_finite(const cf_sim *sim) {
-  for (int e = 0; e < sim->registry.count; ++e) {
-    const cf_entry *entry = &sim->registry.entry[e];
-    if (entry->kind == CF_KIND_CELL) CF_TRY(check_values(sim, entry->name, entry->cell.at));
-    for (int a = 0; entry->kind == CF_KIND_FACE && a < sim->grid.box.dim; ++a)
-      CF_TRY(check_values(sim, entry->name, entry->face.at[a]));
-  }
-  return CF_OK;
-}
-
 static cf_status check_converged(cf_sim *sim) {
   const cf_solve_report *solve = &sim->report.solve;
   if (solve->converged) return CF_OK;
@@ -169,8 +150,9 @@ static cf_status make_step(cf_sim *sim, const double t, const double dt) {
 
 /* One step, that ends at `until` at the latest. */
 static cf_status step(cf_sim *sim, const double until, bool *on_frame) {
-  const double wish =
+  const double chosen =
       isnan(sim->scene->time.dt) ? sim->model->natural_dt(sim->state, sim->time) : sim->scene->time.dt;
+  const double wish = ldexp(chosen, -(int)sim->retries);
   const double frame_time = cf_sim_frame_time(sim, sim->frame + 1), stop = CF_MIN(frame_time, until);
   const double left = stop - sim->time;
   const bool lands = left <= wish * (1 + 1e-9);
@@ -183,7 +165,7 @@ static cf_status step(cf_sim *sim, const double until, bool *on_frame) {
   ++sim->step;
   *on_frame = lands && stop == frame_time;
   if (*on_frame) ++sim->frame;
-  CF_TRY(check_finite(sim));
+  CF_TRY(cf_sim_check_finite(sim));
   return check_converged(sim);
 }
 

@@ -22,6 +22,7 @@ struct cf_sim {
   double time, dt; /* dt: of the latest step, 0 before the first */
   int64_t step;    /* steps taken */
   int64_t frame;   /* frames reached; frame 0 is the start */
+  int64_t retries; /* how often the step was halved after a failure; in the registry if time.retry is > 0 */
 
   cf_registry
       shown; /* what a frame may show: the state, and after cf_sim_show the derived fields asked for */
@@ -31,6 +32,9 @@ struct cf_sim {
 
 /* After cf_checkpoint_read into sim->registry. */
 cf_status cf_sim_restored(cf_sim *sim);
+
+/* CF_NOT_FINITE, with the place and the likely cause, if any state is not finite. */
+cf_status cf_sim_check_finite(const cf_sim *sim);
 
 /* The values of the derived fields among output.fields and output.preview.field, as the state is now, in
  * sim->shown. */

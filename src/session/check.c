@@ -3,39 +3,25 @@
  * The page of `check`; see check.h. Where the machine has the memory, the model is created as a run would do it
  * (and thrown away): what only a grid can tell is then told here, not at the start of a run.
  */
-#define _GNU_SOURCE
 #include "session/check.h"
 
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/mem.h"
 #include "base/real.h"
 #include "model/sim.h"
 #include "session/check_scalar.h"
 #include "session/output.h"
-#include "session/session.h"
+#include "session/space.h"
 
 /* Where a flow crosses more cells than this in a step, what it carries is no longer carried well. */
 #define CELLS_A_STEP 2.0
 #define MANY_FRAMES  10000.0
 
 static void add(cf_check *c, const char *name, const char *text) { cf_check_add(c, 0, name, text); }
-
-/* Sizes for people: "12 MB", "3.4 GB". */
-static void bytes_text(const double bytes, char *text, const size_t size) {
-  if (bytes < 1e9)
-    snprintf(text, size, "%.3g MB", bytes / 1e6);
-  else
-    snprintf(text, size, "%.3g GB", bytes / 1e9);
-}
-
-static double machine_memory(void) {
-  return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGE_SIZE);
-}
 
 /* --- space ------------------------------------------------------------------------------------------------ */
 
@@ -149,8 +135,8 @@ static void add_time(cf_check *c) {
 
 /* --- memory and disk -------------------------------------------------------------------------------------- */
 
-/* Bytes of a frame's fields. */
-static double frame_bytes(const cf_scene *scene) {
+/* Bytes of a frame's fields where no model could be made. */
+static double guess_frame(const cf_scene *scene) {
   double cells = sizeof(cf_real), values = 0;
   for (int a = 0; a < scene->dim; ++a) cells *= (double)scene->domain.cells.value[a];
   const bool chosen = scene->output.fields.count > 0;
@@ -159,26 +145,29 @@ static double frame_bytes(const cf_scene *scene) {
     const char *name = chosen ? scene->output.fields.item[i] : scene->fields.item[i].name;
     values += cf_scene_name_is_flux(name) || strcmp(name, "velocity") == 0 ? scene->dim : 1;
   }
-  const unsigned formats = scene->output.formats;
-  return cells * values * ((formats >> CF_SCENE_FORMAT_VTKHDF & 1) + (formats >> CF_SCENE_FORMAT_NPY & 1));
+  return cells * values * __builtin_popcount(scene->output.formats & ~(1u << CF_SCENE_FORMAT_PNG));
 }
 
 static void add_memory(cf_check *c) {
-  char text[256], one[32], other[32];
-  const double needed = cf_session_memory(c->scene), machine = machine_memory();
-  bytes_text(needed, one, sizeof one);
+  char text[256], one[32], other[32], third[32];
+  const double needed = cf_space_memory(c->scene), machine = cf_space_machine();
+  cf_space_bytes(needed, one);
   snprintf(text, sizeof text, "%s at most, in %s precision", one, CF_PRECISION);
   add(c, "memory", text);
   if (needed > machine) {
-    bytes_text(machine, other, sizeof other);
+    cf_space_bytes(machine, other);
     cf_writing_add(&c->warnings, "  the run may need %s, this machine has %s\n", one, other);
   }
-  const double frame = frame_bytes(c->scene);
+  const double frame = c->fits ? c->frame : guess_frame(c->scene), free = cf_space_free(".");
   const double frames = c->scene->time.frames > 0 ? c->scene->time.end * c->scene->time.frames + 1 : 2;
-  bytes_text(frame, one, sizeof one);
-  bytes_text(frame * frames, other, sizeof other);
-  snprintf(text, sizeof text, "%s a frame, %s in all, before compression", one, other);
+  cf_space_bytes(frame, one);
+  cf_space_bytes(frame * frames, other);
+  cf_space_bytes(free, third);
+  snprintf(text, sizeof text, "%s a frame, %s in all, before compression; %s are free here", one, other,
+           third);
   add(c, "disk", text);
+  if (frame * frames > free)
+    cf_writing_add(&c->warnings, "  the frames may need %s of disk, %s are free here\n", other, third);
 }
 
 /* --- the page --------------------------------------------------------------------------------------------- */
@@ -186,11 +175,12 @@ static void add_memory(cf_check *c) {
 /* As a run would begin; leaves the step that `dt: auto` takes. */
 static cf_status try_model(cf_check *c) {
   cf_sim *sim;
-  c->fits = cf_session_memory(c->scene) < machine_memory() / 2;
+  c->fits = cf_space_memory(c->scene) < cf_space_machine() / 2;
   c->dt = c->scene->time.dt;
   if (!c->fits) return CF_OK;
   CF_TRY(cf_sim_create(&sim, c->scene, omp_get_num_procs()));
   if (isnan(c->dt)) c->dt = sim->model->natural_dt(sim->state, 0);
+  c->frame = cf_space_frame(sim);
   const cf_status status = cf_output_check(sim);
   cf_sim_destroy(sim);
   return status;

@@ -268,7 +268,7 @@ cf_status cf_check_scalar(cf_check *c, const int field) {
   add_words(c, &n);
   add_step(c, &n);
   if (n.D > 0) CF_TRY(add_scheme(c, &n));
-  if (n.waves && n.d->f_t < 0.1)
+  if (n.waves && n.d->f_t < 0.1 && !n.plan.positive)
     add(c, "note", "values may fall below 0 where fronts meet, as those of the exact solution do");
   return CF_OK;
 }

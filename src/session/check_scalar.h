@@ -15,6 +15,7 @@ typedef struct cf_check {
   double dt;    /* s, of a step that is not shortened */
   double speed; /* the largest |u| at time 0, m/s */
   bool fits;    /* the machine has the memory for a run */
+  double frame; /* bytes of one, where it does */
   cf_writing page, warnings;
 } cf_check;
 

@@ -28,8 +28,11 @@ static cf_status check_scene(const cf_sim *sim, const char *path) {
     return s;
   }
   if (saved == NULL || strcmp(saved, ours) != 0)
-    s = cf_fail(CF_BAD_FILE, "%s: belongs to another scene (\"%.200s\", step %lld)", path, facts.title,
-                (long long)facts.step);
+    s = cf_fail(CF_BAD_FILE,
+                "%s: belongs to another scene (\"%.200s\", step %lld): if it is this run's, put the scene "
+                "(of a folder: "
+                "run.yaml) back as it was; else start a new run in another folder",
+                path, facts.title, (long long)facts.step);
   cf_free(saved);
   cf_free(ours);
   return s;
