@@ -106,6 +106,7 @@ void cf_medium_destroy(cf_medium *m) {
   for (int l = 0; l < m->lights; ++l) cf_free(m->depth[l]);
   cf_free(m->density);
   cf_free(m->most);
+  cf_free(m->sent);
   *m = (cf_medium){.density = NULL};
 }
 
@@ -207,34 +208,10 @@ static cf_status illuminate(cf_medium *m, const cf_light *light, const int threa
   w.way = m->h * (float)m->coarse / steep;
   CF_TRY(CF_NEW(&m->depth[m->lights], cells_of(m->m)));
   w.depth = m->depth[m->lights];
-  m->light[m->lights++] = *light;
+  ++m->lights;
   sweep_layers(&w, threads);
   return CF_OK;
 }
-
-cf_status cf_medium_illuminate(cf_medium *m, const int lights, const cf_light *light, const cf_vec sky,
-                               const int threads) {
-  const cf_light above = {.toward = {0, 0, 1}, .colour = sky};
-  for (m->coarse = 1; cells_of(m->n) / (size_t)(m->coarse * m->coarse * m->coarse) > LIGHT_CELLS;)
-    ++m->coarse;
-  for (int a = 0; a < 3; ++a) m->m[a] = (m->n[a] + m->coarse - 1) / m->coarse;
-  CF_TRY(illuminate(m, &above, threads));
-  for (int l = 0; l < CF_MIN(lights, CF_LIGHTS); ++l) CF_TRY(illuminate(m, &light[l], threads));
-  return CF_OK;
-}
-
-static float depth_at(const cf_medium *m, const int l, const float x[3]) {
-  const float wide = (float)m->coarse, y[3] = {x[0] / wide, x[1] / wide, x[2] / wide};
-  return between(m->m, m->depth[l], y);
-}
-
-cf_vec cf_medium_shade(const cf_medium *m, const int l, const cf_vec at) {
-  float x[3];
-  if (l + 1 >= m->lights || !to_cells(m, at, x)) return (cf_vec){1, 1, 1};
-  return cf_vec_fade(cf_vec_scale(depth_at(m, l + 1, x), cf_vec_add(m->absorb, m->scatter)));
-}
-
-/* --- marching ----------------------------------------------------------------------------------------------------- */
 
 /* Henyey and Greenstein's function, 1 if g = 0. */
 static float way_of(const float g, const float cosine) {
@@ -242,19 +219,61 @@ static float way_of(const float g, const float cosine) {
   return (1 - g * g) / (base * sqrtf(base));
 }
 
-/* What one light sends on from here, per unit of what is scattered. */
-static cf_vec sent_on(const cf_medium *m, const int l, const float x[3], const cf_vec sigma,
-                      const cf_vec along) {
-  const cf_vec depth = cf_vec_scale(depth_at(m, l, x), sigma);
-  const float cosine = cf_vec_dot(m->light[l].toward, along), even = l == 0 ? 1 : 0.25f;
-  float kept = 1, left = even, g = l == 0 ? 0 : m->forward;
+/* What one light sends on after this depth, per unit of what is scattered: all orders. */
+static cf_vec sent_on(const float depth, const cf_vec sigma, const float g, const float cosine) {
+  float kept = depth, left = 1, forward = g;
   cf_vec sum = {0, 0, 0};
   for (int order = 0; order < ORDERS; ++order) {
-    sum = cf_vec_along(sum, left * way_of(g, cosine), cf_vec_fade(cf_vec_scale(kept, depth)));
-    kept *= KEPT_DEPTH, left *= KEPT_LIGHT, g *= KEPT_WAY;
+    sum = cf_vec_along(sum, left * way_of(forward, cosine), cf_vec_fade(cf_vec_scale(kept, sigma)));
+    kept *= KEPT_DEPTH, left *= KEPT_LIGHT, forward *= KEPT_WAY;
   }
-  return cf_vec_times(sum, m->light[l].colour);
+  return sum;
 }
+
+static cf_status send(cf_medium *m, const cf_light *light, const cf_vec sky, const cf_vec eye,
+                      const int threads) {
+  const cf_vec sigma = cf_vec_add(m->absorb, m->scatter);
+  const float wide = m->h * (float)m->coarse;
+  CF_TRY(CF_NEW(&m->sent, cells_of(m->m)));
+  CF_PRAGMA(omp parallel for schedule(static) num_threads(threads))
+  for (int k = 0; k < m->m[2]; ++k)
+    for (int j = 0; j < m->m[1]; ++j)
+      for (int i = 0; i < m->m[0]; ++i) {
+        const size_t p = place_of(m->m, i, j, k);
+        const cf_vec at = {m->low[0] + ((float)i + 0.5f) * wide, m->low[1] + ((float)j + 0.5f) * wide,
+                           m->low[2] + ((float)k + 0.5f) * wide};
+        const cf_vec along = cf_vec_unit(cf_vec_sub(at, eye));
+        cf_vec sum = cf_vec_times(sky, sent_on(m->depth[0][p], sigma, 0, 0));
+        for (int l = 1; l < m->lights; ++l) {
+          const float cosine = cf_vec_dot(light[l - 1].toward, along);
+          const cf_vec sent = sent_on(m->depth[l][p], sigma, m->forward, cosine);
+          /* A white surface of the light's colour sends a quarter of that each way from all around. */
+          sum = cf_vec_along(sum, 0.25f, cf_vec_times(light[l - 1].colour, sent));
+        }
+        m->sent[p] = sum;
+      }
+  return CF_OK;
+}
+
+cf_status cf_medium_illuminate(cf_medium *m, const int lights, const cf_light *light, const cf_vec sky,
+                               const cf_vec eye, const int threads) {
+  const cf_light above = {.toward = {0, 0, 1}};
+  for (m->coarse = 1; cells_of(m->n) / (size_t)(m->coarse * m->coarse * m->coarse) > LIGHT_CELLS;)
+    ++m->coarse;
+  for (int a = 0; a < 3; ++a) m->m[a] = (m->n[a] + m->coarse - 1) / m->coarse;
+  CF_TRY(illuminate(m, &above, threads));
+  for (int l = 0; l < CF_MIN(lights, CF_LIGHTS); ++l) CF_TRY(illuminate(m, &light[l], threads));
+  return send(m, light, sky, eye, threads);
+}
+
+cf_vec cf_medium_shade(const cf_medium *m, const int l, const cf_vec at) {
+  float x[3];
+  if (l + 1 >= m->lights || !to_cells(m, at, x)) return (cf_vec){1, 1, 1};
+  const float wide = (float)m->coarse, y[3] = {x[0] / wide, x[1] / wide, x[2] / wide};
+  return cf_vec_fade(cf_vec_scale(between(m->m, m->depth[l + 1], y), cf_vec_add(m->absorb, m->scatter)));
+}
+
+/* --- marching ----------------------------------------------------------------------------------------------------- */
 
 /* Where the ray is in a box, in its own units; false: nowhere. */
 static bool cross(const float from[3], const float along[3], const float low[3], const float high[3],
@@ -287,16 +306,36 @@ static int past_brick(const cf_medium *m, const walk *w, const int step, const f
   return CF_MAX(step + 1, (int)fminf(ceilf((t1 - w->t0) / w->ds - offset), 1e9f));
 }
 
-static void scatter_step(const cf_medium *m, const float x[3], const cf_vec along, const float d,
-                         const float ds, cf_vec *light, cf_vec *through) {
-  const cf_vec sigma = cf_vec_add(m->absorb, m->scatter), fade = cf_vec_fade(cf_vec_scale(d * ds, sigma));
-  cf_vec sent = {0, 0, 0};
-  for (int l = 0; l < m->lights; ++l) sent = cf_vec_add(sent, sent_on(m, l, x, sigma, along));
+static cf_vec sent_at(const cf_medium *m, const float x[3]) {
+  const float wide = (float)m->coarse;
+  cf_vec v[8];
+  float s[3];
+  int low[3];
+  for (int a = 0; a < 3; ++a) {
+    const float at = fminf(fmaxf(x[a] / wide - 0.5f, 0), (float)(m->m[a] - 1));
+    low[a] = (int)at;
+    s[a] = at - (float)low[a];
+  }
+  for (int c = 0; c < 8; ++c)
+    v[c] =
+        m->sent[place_of(m->m, CF_MIN(low[0] + (c & 1), m->m[0] - 1),
+                         CF_MIN(low[1] + (c >> 1 & 1), m->m[1] - 1), CF_MIN(low[2] + (c >> 2), m->m[2] - 1))];
+  for (int a = 0, left = 4; a < 3; ++a, left /= 2)
+    for (int c = 0; c < left; ++c) v[c] = cf_vec_mix(v[2 * c], v[2 * c + 1], s[a]);
+  return v[0];
+}
+
+static void scatter_step(const cf_medium *m, const float x[3], const float way, cf_vec *light,
+                         cf_vec *through) {
+  const cf_vec sigma = cf_vec_add(m->absorb, m->scatter);
+  const bool grey = sigma.x == sigma.y && sigma.y == sigma.z;
+  const float kept = expf(-way * sigma.x);
+  const cf_vec fade = grey ? (cf_vec){kept, kept, kept} : cf_vec_fade(cf_vec_scale(way, sigma));
   /* The source over the step, as if uniform: scatter/sigma (1 - fade). */
-  const cf_vec lost = {1 - fade.x, 1 - fade.y, 1 - fade.z};
-  const cf_vec part = {sigma.x > 0 ? m->scatter.x / sigma.x : 0, sigma.y > 0 ? m->scatter.y / sigma.y : 0,
-                       sigma.z > 0 ? m->scatter.z / sigma.z : 0};
-  *light = cf_vec_add(*light, cf_vec_times(*through, cf_vec_times(cf_vec_times(part, lost), sent)));
+  const cf_vec sent = {sigma.x > 0 ? (1 - fade.x) * m->scatter.x / sigma.x : 0,
+                       sigma.y > 0 ? (1 - fade.y) * m->scatter.y / sigma.y : 0,
+                       sigma.z > 0 ? (1 - fade.z) * m->scatter.z / sigma.z : 0};
+  *light = cf_vec_add(*light, cf_vec_times(*through, cf_vec_times(sent, sent_at(m, x))));
   *through = cf_vec_times(*through, fade);
 }
 
@@ -314,8 +353,7 @@ static bool start(const cf_medium *m, const cf_ray *r, const float near, const f
 
 void cf_medium_march(const cf_medium *m, const cf_ray *r, const float near, const float far,
                      const float offset, cf_vec *light, cf_vec *through) {
-  const bool scatters = m->scatter.x > 0 || m->scatter.y > 0 || m->scatter.z > 0;
-  const float ds_unit = m->h;
+  const bool scatters = m->sent != NULL;
   float depth = 0;
   walk w;
   if (!start(m, r, near, far, &w)) return;
@@ -331,9 +369,9 @@ void cf_medium_march(const cf_medium *m, const cf_ray *r, const float near, cons
     ++i;
     const float d = between(m->n, m->density, x);
     if (d <= 0) continue;
-    depth += d * w.ds * ds_unit;
+    depth += d * w.ds * m->h;
     if (!scatters) continue;
-    scatter_step(m, x, r->along, d, w.ds * ds_unit, light, through);
+    scatter_step(m, x, d * w.ds * m->h, light, through);
     if (cf_vec_luminance(*through) < 1e-3f) break;
   }
   if (!scatters) *through = cf_vec_times(*through, cf_vec_fade(cf_vec_scale(depth, m->absorb)));

@@ -57,6 +57,7 @@ static void cross_haze(const cf_haze *haze, const float far, cf_vec *light, cf_v
 }
 
 enum { TURNS = 12 };
+#define BRIGHTEST 16.0f
 
 /* `behind` is what the ray sees if nothing is in its way; *distance how far it came before it met something. */
 static cf_vec see(const cf_stage *stage, cf_ray ray, const cf_vec behind, cf_dice *dice, float *distance) {
@@ -108,7 +109,10 @@ static void expose_pixel(const cf_stage *stage, const cf_lens *lens, const int x
     cf_ray ray = cf_lens_ray(lens, px, py, disc);
     ray.time = cf_dice_one(&dice);
     const cf_vec behind = cf_backdrop_at(&s->backdrop, px / wide, py / tall, wide / tall);
-    sum = cf_vec_add(sum, see(stage, ray, behind, &dice, &distance));
+    const cf_vec seen = see(stage, ray, behind, &dice, &distance);
+    /* One sample that finds a lamp through a drop must not outshine all others. */
+    const float most = fmaxf(seen.x, fmaxf(seen.y, seen.z));
+    sum = cf_vec_along(sum, fminf(1, BRIGHTEST / fmaxf(most, BRIGHTEST)), seen);
     f->distance[p] = fminf(f->distance[p], distance * cf_vec_dot(ray.along, lens->forward));
   }
   f->light[p] = cf_vec_scale(1 / (float)s->samples, sum);
