@@ -25,9 +25,12 @@
 #define COARSE_SWEEPS 3
 /* Over-relaxation of the finest level over that of the others. */
 #define FINEST_OVER 0.85
+/* Up to this stiffness half sweeps alone are fewer operations, and fewer passes over memory, than cycles with coarse
+ * levels: 32 of them, in one pass, do what 5 or 6 cycles do. */
+#define SWEEPS_ENOUGH 10
 /* A pass of half sweeps alone gains at most this, and has at most so many of them. */
 #define PASS_GAIN   1e-7
-#define PASS_SWEEPS 24
+#define PASS_SWEEPS 32
 /* What rounding leaves of the residual that a recursion started from; a new start is due well before. */
 #define RECURSION_FLOOR 5e-7
 #define RECURSION_TURN  2e-5
@@ -100,6 +103,11 @@ static cf_level coarsest_plain(const cf_box_solver *f) {
   return l;
 }
 
+/* Levels to use: the finest alone where half sweeps do. */
+static int depth_for(const cf_helmholtz *A) {
+  return cf_level_stiffness(&A->level[0]) <= SWEEPS_ENOUGH ? 1 : A->depth;
+}
+
 /* Whether single precision can do this at all, half sweeps of one colour are independent on the finest level, and
  * levels go far enough. */
 static bool is_suitable(const cf_box_solver *f, const cf_level *finest, const cf_level *coarsest) {
@@ -107,7 +115,8 @@ static bool is_suitable(const cf_box_solver *f, const cf_level *finest, const cf
   if (!(f->scale > 0) || !(f->scale < 1e100)) return false;
   /* The direct solution takes cf_real. */
   if (sizeof(cf_real) == sizeof(float) && f->scale > 1e30) return false;
-  return solved_directly(coarsest) || cf_level_stiffness(coarsest) <= CF_STIFF_ENOUGH;
+  return solved_directly(coarsest) ||
+         cf_level_stiffness(coarsest) <= (f->depth == 1 ? SWEEPS_ENOUGH : CF_STIFF_ENOUGH);
 }
 
 /* 1 + (share of diffusion in the diagonal)^2 / 5, a little less on the finest level, was best at 1e-6. */
@@ -117,9 +126,9 @@ static void choose_omega(const cf_level *l, const bool finest, const bool half_s
 }
 
 bool cf_box_solver_set(cf_box_solver *f, const cf_helmholtz *A) {
-  const cf_level *finest = &A->level[0], *coarsest = &A->level[A->depth - 1];
+  f->depth = depth_for(A);
+  const cf_level *finest = &A->level[0], *coarsest = &A->level[f->depth - 1];
   const double h = A->grid.h, stiffness = cf_level_stiffness(coarsest);
-  f->depth = A->depth;
   f->alpha = finest->alpha;
   f->beta = A->beta;
   f->scale = f->alpha + 2 * A->grid.box.dim * f->beta / (h * h);
@@ -143,7 +152,7 @@ const char *cf_box_solver_method(const cf_box_solver *f) { return f->depth == 1 
 
 /* --- passes ------------------------------------------------------------------------------------------- */
 
-static void push(cf_pass *p, const cf_stage stage, const double omega) {
+static void push(cf_pass *p, const cf_pass_stage stage, const double omega) {
   p->omega[p->count] = (float)omega;
   p->stage[p->count++] = stage;
 }
@@ -151,29 +160,29 @@ static void push(cf_pass *p, const cf_stage stage, const double omega) {
 /* After FIRST, or where that does not do: the half sweeps before the coarse correction. */
 static void push_start(cf_pass *p) {
   if (p->at->odd_seam) {
-    push(p, CF_STAGE_CLEAR, 0);
-    push(p, CF_STAGE_RED, 0);
-    push(p, CF_STAGE_BLACK, 0);
+    push(p, CF_PASS_CLEAR, 0);
+    push(p, CF_PASS_RED, 0);
+    push(p, CF_PASS_BLACK, 0);
   } else {
-    push(p, CF_STAGE_SECOND, 0);
+    push(p, CF_PASS_SECOND, 0);
   }
 }
 
 /* The last black half sweep, and taking the correction. */
 static void push_end(cf_pass *p, const double omega_last, const double omega_first) {
   if (p->at->odd_seam) {
-    push(p, CF_STAGE_BLACK, omega_last);
-    push(p, CF_STAGE_RESIDUAL, 0);
+    push(p, CF_PASS_BLACK, omega_last);
+    push(p, CF_PASS_RESIDUAL, 0);
   } else {
-    push(p, CF_STAGE_LAST, omega_last);
+    push(p, CF_PASS_LAST, omega_last);
   }
-  push(p, CF_STAGE_UPDATE, omega_first);
+  push(p, CF_PASS_UPDATE, omega_first);
 }
 
 /* Half sweeps over-relaxed so that `count` of them in a row, red first, damp all errors alike; the first is FIRST. */
 static void push_half_sweeps(cf_pass *p, const double jacobi, const int count, const bool finest) {
   const double j2 = jacobi * jacobi;
-  if (p->at->odd_seam) push(p, CF_STAGE_CLEAR, 0);
+  if (p->at->odd_seam) push(p, CF_PASS_CLEAR, 0);
   double omega = 1;
   for (int v = 0; v < count; ++v) {
     if (p->at->odd_seam)
@@ -183,9 +192,9 @@ static void push_half_sweeps(cf_pass *p, const double jacobi, const int count, c
     if (v == count - 1 && finest)
       push_end(p, omega, 1);
     else if (v == 1 && !p->at->odd_seam)
-      push(p, CF_STAGE_SECOND, omega);
+      push(p, CF_PASS_SECOND, omega);
     else if (v > 1 || p->at->odd_seam)
-      push(p, v % 2 == 0 ? CF_STAGE_RED : CF_STAGE_BLACK, omega);
+      push(p, v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, omega);
   }
 }
 
@@ -247,14 +256,14 @@ static void correct(const cf_box_solver *f, const int l) {
     return;
   }
   push_start(&down);
-  push(&down, CF_STAGE_RESTRICT, 0);
+  push(&down, CF_PASS_RESTRICT, 0);
   cf_wave_run(&f->wave, &down);
   correct(f, l + 1);
   cf_split_fill_seams(down.coarse, down.coarse->e);
-  push(&up, CF_STAGE_PROLONG, 0);
+  push(&up, CF_PASS_PROLONG, 0);
   for (int v = 0; v < COARSE_SWEEPS; ++v) {
-    push(&up, CF_STAGE_RED, 0);
-    push(&up, CF_STAGE_BLACK, 0);
+    push(&up, CF_PASS_RED, 0);
+    push(&up, CF_PASS_BLACK, 0);
   }
   cf_wave_run(&f->wave, &up);
 }
@@ -301,7 +310,7 @@ static double scale_for(const cf_box_solver *f, const cf_level *l, const cf_cell
 
 static void push_first_part(const cf_box_solver *f, cf_pass *p) {
   push_start(p);
-  if (f->depth > 1) push(p, CF_STAGE_RESTRICT, 0);
+  if (f->depth > 1) push(p, CF_PASS_RESTRICT, 0);
 }
 
 static void take_form_sums(const cf_box_solver *f, iteration *it) {
@@ -324,7 +333,7 @@ static void form(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b,
   cf_pass p = pass_on_finest(f, b, x);
   p.scale = it->scale;
   p.shift = it->shift;
-  push(&p, CF_STAGE_FORM, f->depth > 1 ? 0 : 1);
+  push(&p, CF_PASS_FORM, f->depth > 1 ? 0 : 1);
   if (f->depth > 1) push_first_part(f, &p);
   cf_wave_run(&f->wave, &p);
   take_form_sums(f, it);
@@ -342,8 +351,8 @@ static void cycle(const cf_box_solver *f, const cf_cell b, const cf_cell x, cons
   correct(f, 1);
   cf_split_fill_seams(p.coarse, p.coarse->e);
   p.gain = it->scale / f->scale;
-  push(&p, CF_STAGE_PROLONG, 0);
-  push(&p, CF_STAGE_RED, 0);
+  push(&p, CF_PASS_PROLONG, 0);
+  push(&p, CF_PASS_RED, 0);
   push_end(&p, 0, 0);
   if (!last) push_first_part(f, &p);
   cf_wave_run(&f->wave, &p);
@@ -389,6 +398,7 @@ cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, 
   iteration it = {.rate = 0.1};
   int slow = 0;
   *finished = true;
+  report->levels = f->depth;
   it.scale = scale_for(f, l, b, x);
   set_mean(f, l, b, x, &it);
   form(f, A, b, x, &it);

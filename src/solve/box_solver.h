@@ -11,7 +11,7 @@
  * (iterative refinement; r -= A e loses nothing to speak of, see stages.h). r is formed anew where its
  * recursion has gained so much that rounding shows, so any tolerance is reached that x can hold.
  *
- * Where diffusion adds little to the diagonal (sigma up to about one half) no coarse level is needed: one
+ * Where diffusion adds little to the diagonal (sigma up to about 1.5) no coarse level is needed: one
  * pass of half sweeps, over-relaxed as Chebyshev's polynomials ask (Golub and Varga 1961), does it all.
  */
 #ifndef CF_SOLVE_BOX_SOLVER_H

@@ -28,20 +28,19 @@
 
 #include "solve/split.h"
 
-typedef enum cf_stage {
-  CF_STAGE_FORM,
-  CF_STAGE_FIRST,
-  CF_STAGE_SECOND,
-  CF_STAGE_RED,
-  CF_STAGE_BLACK,
-  CF_STAGE_LAST,
-  CF_STAGE_UPDATE,
-  CF_STAGE_RESTRICT,
-  CF_STAGE_PROLONG,
-  CF_STAGE_CLEAR,
-  CF_STAGE_RESIDUAL,
-  CF_STAGES
-} cf_stage;
+typedef enum cf_pass_stage {
+  CF_PASS_FORM,
+  CF_PASS_FIRST,
+  CF_PASS_SECOND,
+  CF_PASS_RED,
+  CF_PASS_BLACK,
+  CF_PASS_LAST,
+  CF_PASS_UPDATE,
+  CF_PASS_RESTRICT,
+  CF_PASS_PROLONG,
+  CF_PASS_CLEAR,
+  CF_PASS_RESIDUAL
+} cf_pass_stage;
 
 /* Longest list of stages in one pass. */
 #define CF_PASS_STAGES 40
@@ -49,7 +48,7 @@ typedef enum cf_stage {
 typedef struct cf_pass {
   const cf_split *at, *coarse; /* coarse: NULL on the coarsest level */
   int count;
-  cf_stage stage[CF_PASS_STAGES];
+  cf_pass_stage stage[CF_PASS_STAGES];
   float omega[CF_PASS_STAGES]; /* of the half sweep; 0: the level's */
 
   /* of the finest level alone */
@@ -67,6 +66,7 @@ typedef struct cf_pass {
 typedef struct cf_strip {
   int j, end; /* rows [j, end) */
   int k, from, to;
+  int next_j, next_k; /* the rows that the same stage will have next: fetched meanwhile; next_k < 0: none */
   ptrdiff_t sum,
       sum_step; /* where in `rows` the sums of row j go, and how far from there those of the next row */
   void *scratch;
@@ -79,6 +79,6 @@ size_t cf_stage_scratch(const cf_split *s);
 void cf_stage_run(const cf_pass *p, int number, const cf_strip *t);
 
 /* Whether the stage reads e (or x) of neighbouring rows, so that ghosts must be right. */
-bool cf_stage_reads_around(cf_stage stage);
+bool cf_stage_reads_around(cf_pass_stage stage);
 
 #endif

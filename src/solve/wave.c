@@ -54,6 +54,7 @@ static cf_strip strip_of(const cf_wave *w, const cf_split *s, const int j, const
                 .end = end,
                 .k = k,
                 .to = s->width,
+                .next_k = -1,
                 .sum = row * pieces + piece,
                 .sum_step = pieces,
                 .scratch = scratch_of(w)};
@@ -89,14 +90,24 @@ static void wait_for(const struct cf_wave_mark *mark, const int planes) {
     if (spins > 2000) sched_yield();
 }
 
+/* The strip that follows in rows [low, end) of the tile, in this plane or the next. */
+static void set_next(const cf_split *s, const int low, const int end, cf_strip *t) {
+  t->next_j = t->end;
+  t->next_k = t->k;
+  if (t->end + (t->end - t->j) <= end) return;
+  t->next_j = CF_MAX(low, 0);
+  t->next_k = t->k + 1 < s->n[2] && t->next_j + t->end - t->j <= s->n[1] ? t->k + 1 : -1;
+}
+
 /* All stages on rows [j, end), each a row lower than the one before. */
 static void run_block(const cf_wave *w, const cf_pass *p, const int j, const int end, const int step,
-                      const int planes) {
+                      const int planes, const int tile_low, const int tile_end) {
   const cf_split *s = p->at;
   for (int v = 0; v < p->count; ++v) {
     const int low = CF_MAX(j - v, 0), high = CF_MIN(end - v, s->n[1]), plane = step - v;
     if (low >= high || plane < 0 || plane >= planes) continue;
-    const cf_strip t = strip_of(w, s, low, high, s->dim == 3 ? plane : 0, s->dim == 3 ? 0 : plane);
+    cf_strip t = strip_of(w, s, low, high, s->dim == 3 ? plane : 0, s->dim == 3 ? 0 : plane);
+    if (s->dim == 3) set_next(s, tile_low - v, CF_MIN(tile_end - v, s->n[1]), &t);
     cf_stage_run(p, v, &t);
   }
 }
@@ -108,7 +119,7 @@ static void run_tile(const cf_wave *w, const cf_pass *p, const int tile, const i
   for (int step = 0; step < steps; ++step) {
     if (tile > 0) wait_for(&w->done[tile - 1], step + 1);
     for (int j = tile * height; j < end; j += BLOCK_ROWS)
-      run_block(w, p, j, CF_MIN(j + BLOCK_ROWS, end), step, planes);
+      run_block(w, p, j, CF_MIN(j + BLOCK_ROWS, end), step, planes, tile * height, end);
     atomic_store_explicit(&w->done[tile].planes, step + 1, memory_order_release);
   }
 }
