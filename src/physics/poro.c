@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One step: from the nodes of blocks to fields on the lattice, what each cell is, what each face conducts, the stages,
+ * and back to the nodes.
+ */
+#include "physics/poro.h"
+
+#include <math.h>
+
+#include "base/mem.h"
+#include "physics/poro_part.h"
+
+static const double SDIRK_GAMMA = 0.29289321881345254; /* 1 - 1/sqrt 2 */
+
+/* --- the object -------------------------------------------------------------------------------------------- */
+
+#define FIELDS 10
+static void list_fields(cf_poro *w, cf_cell *list[FIELDS]) {
+  cf_cell *all[FIELDS] = {&w->C, &w->m, &w->A, &w->fill, &w->S, &w->b, &w->alpha, &w->value, &w->m0, &w->A0};
+  for (int i = 0; i < FIELDS; ++i) list[i] = all[i];
+}
+
+static cf_status fill_in(cf_poro *w) {
+  const cf_walls walls = {0};
+  cf_cell *list[FIELDS];
+  CF_TRY(cf_tiles_create(&w->tiles, &w->grid->box, NULL));
+  list_fields(w, list);
+  for (int i = 0; i < FIELDS; ++i) CF_TRY(cf_tiles_cell_create(w->tiles, list[i]));
+  CF_TRY(cf_tiles_face_create(w->tiles, &w->beta));
+  CF_TRY(cf_pages_reserve((void **)&w->kind, (size_t)w->grid->box.size, false));
+  CF_TRY(cf_pages_reserve((void **)&w->wet, (size_t)w->grid->box.size, false));
+  CF_TRY(CF_NEW(&w->rows, (ptrdiff_t)w->tiles->n[1] * w->tiles->n[2]));
+  CF_TRY(cf_region_create_on(&w->region, w->grid, w->tiles));
+  return cf_helmholtz_create(&w->solver, w->grid, &walls, 0);
+}
+
+cf_status cf_poro_create(cf_poro **w, const cf_grid *lattice, const cf_poro_params *p) {
+  *w = NULL;
+  if (!(p->k >= 0 && isfinite(p->k))) return cf_fail(CF_BAD_ARGUMENT, "k = %g: must be >= 0", p->k);
+  if (!(p->tau >= 0 && isfinite(p->tau))) return cf_fail(CF_BAD_ARGUMENT, "tau = %g s: must be >= 0", p->tau);
+  if (!(p->f_t >= 0 && p->f_t <= 1))
+    return cf_fail(CF_BAD_ARGUMENT, "f_t = %g: must be between 0 and 1", p->f_t);
+  cf_poro *fresh;
+  CF_TRY(CF_NEW(&fresh, 1));
+  fresh->grid = lattice;
+  fresh->p = *p;
+  const cf_status s = fill_in(fresh);
+  if (s != CF_OK) {
+    cf_poro_destroy(fresh);
+    return s;
+  }
+  *w = fresh;
+  return CF_OK;
+}
+
+void cf_poro_destroy(cf_poro *w) {
+  if (w == NULL) return;
+  cf_cell *list[FIELDS];
+  list_fields(w, list);
+  for (int i = 0; i < FIELDS; ++i) cf_cell_destroy(list[i], &w->grid->box);
+  cf_face_destroy(&w->beta, &w->grid->box);
+  cf_pages_release(w->kind, (size_t)w->grid->box.size);
+  cf_pages_release(w->wet, (size_t)w->grid->box.size);
+  cf_helmholtz_destroy(w->solver);
+  cf_region_destroy(w->region);
+  cf_tiles_destroy(w->tiles);
+  cf_free(w->rows);
+  cf_free(w);
+}
+
+double cf_poro_filter_rate(const cf_poro_params *p, const double h) {
+  const double K2 = 16 / (h * h), b = 1 + p->f_t * p->tau * p->k * K2, under = b * b - 4 * p->tau * p->k * K2;
+  if (under < 0) return b / (2 * p->tau);
+  return 2 * p->k * K2 / (b + sqrt(under));
+}
+
+/* --- between nodes and fields ------------------------------------------------------------------------------ */
+
+/* The tiles of this step; fields become 0 where tiles are new or cells may have been left. */
+static cf_status follow(cf_poro *w, const cf_nodes *nodes) {
+  cf_cell *list[FIELDS];
+  const int edge = CF_BLOCK_EDGE(w->grid->box.dim);
+  cf_tiles_drop_all(w->tiles);
+  for (int32_t b = 0; b < nodes->count; ++b) {
+    const int *low = nodes->block[b].cell;
+    const int high[3] = {low[0] + edge, low[1] + edge, low[2] + (w->grid->box.dim == 3 ? edge : 1)};
+    cf_tiles_add_box(w->tiles, low, high);
+  }
+  CF_TRY(cf_tiles_update(w->tiles));
+  list_fields(w, list);
+  for (int i = 0; i < FIELDS; ++i) cf_tiles_retire_cell(w->tiles, *list[i]);
+  cf_tiles_retire_face(w->tiles, w->beta);
+  cf_tiles_retire_bytes(w->tiles, w->kind + w->grid->box.first, 1);
+  cf_tiles_retire_bytes(w->tiles, w->wet + w->grid->box.first, 1);
+  cf_region_retire(w->region);
+  return CF_OK;
+}
+
+static void clear(const cf_poro *w) {
+  const cf_tiles *t = w->tiles;
+  CF_PARALLEL_TILES(t, w->grid->threads, r)
+  CF_TILE_ROWS(t, r, j, k)
+  CF_TILE_RUNS(t, r, run) {
+    const ptrdiff_t p = cf_box_at(&w->grid->box, run->low, j, k);
+    const size_t bytes = sizeof(cf_real) * (size_t)(run->high - run->low);
+    memset(w->C.at + p, 0, bytes);
+    memset(w->m.at + p, 0, bytes);
+    memset(w->A.at + p, 0, bytes);
+    memset(w->fill.at + p, 0, bytes);
+  }
+}
+
+/* Element p of the lattice for node n of a block; false beyond the lattice. */
+static bool lattice_at(const cf_poro *w, const cf_nodes *nodes, const cf_block *b, const int n,
+                       ptrdiff_t *p) {
+  int cell[3];
+  cf_nodes_cell(nodes, b, n, cell);
+  const cf_box *box = &w->grid->box;
+  *p = cf_box_at(box, cell[0], cell[1], cell[2]);
+  return cell[0] < box->n[0] && cell[1] < box->n[1] && cell[2] < box->n[2];
+}
+
+static void fetch(const cf_poro *w, const cf_nodes *nodes) {
+  CF_PARALLEL_BLOCKS(nodes, w->grid->threads, b)
+  for (int n = 0; n < CF_BLOCK_NODES; ++n) {
+    ptrdiff_t p;
+    const cf_lanes *node = &nodes->at[(ptrdiff_t)b * CF_BLOCK_NODES + n];
+    if (!((*node)[CF_NODE_FILL] > (cf_real)CF_PORO_LEAST_FILL) ||
+        !lattice_at(w, nodes, &nodes->block[b], n, &p))
+      continue;
+    w->C.at[p] = (*node)[CF_NODE_CAPACITY];
+    w->m.at[p] = (*node)[CF_NODE_WATER];
+    w->A.at[p] = (*node)[CF_NODE_MEMORY];
+    w->fill.at[p] = (*node)[CF_NODE_FILL];
+  }
+}
+
+/* What the particles will gather; m0 and A0 are what the nodes had. */
+static void give(const cf_poro *w, const cf_nodes *nodes) {
+  CF_PARALLEL_BLOCKS(nodes, w->grid->threads, b)
+  for (int n = 0; n < CF_BLOCK_NODES; ++n) {
+    ptrdiff_t p;
+    cf_lanes *node = &nodes->at[(ptrdiff_t)b * CF_BLOCK_NODES + n];
+    const bool there =
+        lattice_at(w, nodes, &nodes->block[b], n, &p) && w->kind[p + w->grid->box.first] != CF_PORO_NONE;
+    const bool held = there && !cf_poro_is_free(w, p);
+    (*node)[CF_NODE_WATER] = there ? (w->m.at[p] - w->m0.at[p]) / w->C.at[p] : 0;
+    (*node)[CF_NODE_MEMORY] = there ? (w->A.at[p] - w->A0.at[p]) / w->C.at[p] : 0;
+    (*node)[CF_NODE_FILL] = held ? 1 : 0;
+    (*node)[CF_NODE_CAPACITY] = held ? w->value.at[p] : 0;
+  }
+}
+
+/* --- stages ------------------------------------------------------------------------------------------------ */
+
+/* What the held cells around free cell p bring: the sum of kappa, and of kappa times their values. */
+typedef struct held_sum {
+  double conductance, value;
+} held_sum;
+
+static held_sum held_around(const cf_poro *w, const ptrdiff_t p) {
+  const cf_box *box = &w->grid->box;
+  const unsigned char *kind = w->kind + box->first;
+  held_sum sum = {0, 0};
+  for (int a = 0; a < box->dim; ++a)
+    for (int side = -1; side <= 1; side += 2) {
+      const ptrdiff_t q = p + side * box->stride[a];
+      if (kind[q] <= CF_PORO_FREE) continue;
+      const double kappa = cf_poro_to_held(w, p, q);
+      sum.conductance += kappa, sum.value += kappa * (double)w->value.at[q];
+    }
+  return sum;
+}
+
+/* Whether a free cell may have held ones around it. */
+static bool is_near(const cf_poro *w, const ptrdiff_t p) {
+  return w->kind[p + w->grid->box.first] == CF_PORO_NEAR;
+}
+
+/* alpha, which no stage changes. beta: of the stage. */
+static void make_alpha(const cf_poro *w, const double beta) {
+  FOR_CELLS(w, p) {
+    const bool free = cf_poro_is_free(w, p);
+    w->alpha.at[p] = free ? w->C.at[p] : (cf_real)1;
+    if (free && is_near(w, p)) w->alpha.at[p] += (cf_real)(beta * held_around(w, p).conductance);
+  }
+  END_CELLS
+}
+
+/* b and the guess of S. left: tau d/(tau + d); rate: water added in the stage. */
+static void make_right_side(const cf_poro *w, const double left, const double beta) {
+  FOR_CELLS(w, p) {
+    w->b.at[p] = 0;
+    if (!cf_poro_is_free(w, p)) {
+      w->S.at[p] = w->kind[p + w->grid->box.first] == CF_PORO_NONE ? 0 : w->value.at[p];
+      continue;
+    }
+    double sum = (double)w->m.at[p] - left * (double)w->A.at[p];
+    if (is_near(w, p)) sum += beta * held_around(w, p).value;
+    w->b.at[p] = (cf_real)sum;
+    w->S.at[p] = w->m.at[p] / w->C.at[p];
+  }
+  END_CELLS
+}
+
+static void finish_stage(const cf_poro *w, const double d) {
+  const cf_box *box = &w->grid->box;
+  const double tau = w->p.tau, f_t = w->p.f_t, per = w->scale > 0 ? 1 / w->scale : 0;
+  FOR_CELLS(w, p) {
+    if (w->kind[p + box->first] == CF_PORO_NONE) continue;
+    if (!cf_poro_is_free(w, p)) {
+      w->m.at[p] = w->C.at[p] * w->value.at[p];
+      w->A.at[p] *= (cf_real)(tau / (tau + d));
+      continue;
+    }
+    const double S = (double)w->S.at[p];
+    double L = 0;
+    for (int a = 0; a < box->dim; ++a) {
+      const ptrdiff_t s = box->stride[a];
+      L += (double)w->beta.at[a][p + s] * ((double)w->S.at[p + s] - S) +
+           (double)w->beta.at[a][p] * ((double)w->S.at[p - s] - S);
+    }
+    L *= per;
+    if (is_near(w, p)) {
+      const held_sum held = held_around(w, p);
+      L += held.value - held.conductance * S;
+    }
+    const double A = (tau * (double)w->A.at[p] - d * (1 - f_t) * L) / (tau + d);
+    w->m.at[p] = (cf_real)((double)w->m.at[p] - d * (A - f_t * L));
+    w->A.at[p] = (cf_real)A;
+  }
+  END_CELLS
+}
+
+static cf_status stage(cf_poro *w, const double t, const double d, cf_solve_report *report) {
+  const double tau = w->p.tau;
+  cf_solve_report one;
+  cf_poro_add_rates(w, t + d, d);
+  make_right_side(w, tau > 0 ? tau * d / (tau + d) : 0, w->stage_beta);
+  CF_TRY(cf_helmholtz_solve(w->solver, w->b, &w->p.solver, w->S, &one));
+  finish_stage(w, d);
+  report->iterations += one.iterations;
+  report->levels = one.levels;
+  report->residual = CF_MAX(report->residual, one.residual);
+  report->converged = report->converged && one.converged;
+  return CF_OK;
+}
+
+/* y* = -sqrt2 y + (1 + sqrt2) Y1. */
+static void extrapolate(const cf_poro *w) {
+  const cf_real a = (cf_real)-1.4142135623730951, b = (cf_real)2.4142135623730951;
+  FOR_CELLS(w, p) {
+    w->m.at[p] = a * w->m0.at[p] + b * w->m.at[p];
+    w->A.at[p] = a * w->A0.at[p] + b * w->A.at[p];
+  }
+  END_CELLS
+}
+
+static void keep(const cf_poro *w) {
+  FOR_CELLS(w, p) {
+    w->m0.at[p] = w->m.at[p];
+    w->A0.at[p] = w->A.at[p];
+  }
+  END_CELLS
+}
+
+static double gained_by_nodes(const cf_poro *w) {
+  const cf_tiles *t = w->tiles;
+  for (ptrdiff_t r = 0; r < t->rows; ++r) w->rows[r] = 0;
+  CF_PARALLEL_TILES(t, w->grid->threads, r)
+  CF_TILE_ROWS(t, r, j, k)
+  CF_TILE_RUNS(t, r, run)
+  for (int i = run->low; i < run->high; ++i) {
+    const ptrdiff_t p = cf_box_at(&w->grid->box, i, j, k);
+    w->rows[r] += (double)w->m.at[p] - (double)w->m0.at[p];
+  }
+  return cf_sum_ordered(w->rows, t->rows);
+}
+
+/* The length of the stages of a step, and what follows from it. */
+static cf_status set_stage(cf_poro *w, const double d) {
+  const double tau = w->p.tau, h2 = w->grid->h * w->grid->h;
+  w->stage_beta = d * (d + w->p.f_t * tau) / (tau + d);
+  w->scale = w->stage_beta * h2;
+  cf_poro_set_faces(w);
+  make_alpha(w, w->stage_beta);
+  return cf_helmholtz_set(
+      w->solver, &(cf_coefficients){.alpha_at = &w->alpha, .beta_at = &w->beta, .region = w->region});
+}
+
+cf_status cf_poro_step(cf_poro *w, cf_nodes *nodes, const double t, const double dt, double *gained,
+                       cf_solve_report *report) {
+  const double d = w->p.two_stages ? SDIRK_GAMMA * dt : dt;
+  *report = (cf_solve_report){.converged = true};
+  CF_TRY(follow(w, nodes));
+  clear(w);
+  fetch(w, nodes);
+  CF_TRY(cf_poro_find_cells(w, t + dt));
+  keep(w);
+  CF_TRY(set_stage(w, d));
+  CF_TRY(stage(w, t, d, report));
+  if (w->p.two_stages) {
+    extrapolate(w);
+    CF_TRY(stage(w, t + dt - d, d, report));
+  }
+  *gained = gained_by_nodes(w);
+  cf_poro_note_given(w, t + dt, dt, *gained);
+  give(w, nodes);
+  return CF_OK;
+}
