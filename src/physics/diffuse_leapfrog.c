@@ -65,7 +65,8 @@ CF_KERNEL void kick_scalar_row(const int dim, const int varies, const int n, con
 }
 CF_CLONED_FORMS(kick_scalar_row, const leap *, const ptrdiff_t)
 
-CF_KERNEL void drift_row(const int dim, const int scalar, const int n, const leap *l, const ptrdiff_t start) {
+CF_KERNEL void drift_row(const int dim, const int scalar, const int acts, const int n, const leap *l,
+                         const ptrdiff_t start) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
     const ptrdiff_t p = start + i;
@@ -76,11 +77,12 @@ CF_KERNEL void drift_row(const int dim, const int scalar, const int n, const lea
       CF_AXIS_LOOP
       for (int a = 0; a < dim; ++a) div += l->q[a][p + l->stride[a]] - l->q[a][p];
     }
-    const cf_real W = l->W != NULL ? l->W[p] : 0, C = l->capacity != NULL ? l->capacity[p] : 1;
-    l->phi[p] += l->d * W - l->out * div / C;
+    const cf_real lost = l->out * div,
+                  W = acts == CF_ACTS_SOURCE || (acts == CF_ACTS_ALL && l->W != NULL) ? l->W[p] : 0;
+    l->phi[p] += l->d * W - (acts == CF_ACTS_ALL ? lost / l->capacity[p] : lost);
   }
 }
-CF_CLONED_FORMS(drift_row, const leap *, const ptrdiff_t)
+CF_CLONED_ACTS(drift_row, const leap *)
 
 static leap leap_of(const cf_diffuse *d, const cf_diffused *y) {
   leap l = {.k = (cf_real)d->p.k.value, .phi = y->phi.at, .s = y->s.at, .W = d->W.at};

@@ -76,6 +76,34 @@ typedef struct cf_flux_law {
   double delta, left, per;
 } cf_flux_law;
 
+/* What a row has to look at beside fluxes: the second literal of those below, after dim and `form`. A row that looked at
+ * the pointers itself would load from nowhere, masked out, which costs more than all the rest of it. */
+enum {
+  CF_ACTS_NOTHING,
+  CF_ACTS_SOURCE,
+  CF_ACTS_ALL
+}; /* of W and a capacity that varies: neither; W; perhaps both */
+
+#define CF_CLONED_ACTS_ONE(name, acts, T)                                                                \
+  CF_KERNEL void name##_##acts(const int dim, const int form, const int n, T x, const ptrdiff_t start) { \
+    name(dim, form, CF_ACTS_##acts, n, x, start);                                                        \
+  }                                                                                                      \
+  CF_CLONED_FORMS(name##_##acts, T, const ptrdiff_t)
+
+#define CF_CLONED_ACTS(name, T)                                                      \
+  CF_CLONED_ACTS_ONE(name, NOTHING, T)                                               \
+  CF_CLONED_ACTS_ONE(name, SOURCE, T)                                                \
+  CF_CLONED_ACTS_ONE(name, ALL, T)                                                   \
+  static inline void name##_by_form(const int dim, const int form, const int n, T x, \
+                                    const ptrdiff_t start) {                         \
+    if (x->capacity != NULL)                                                         \
+      name##_ALL_by_form(dim, form, n, x, start);                                    \
+    else if (x->W != NULL)                                                           \
+      name##_SOURCE_by_form(dim, form, n, x, start);                                 \
+    else                                                                             \
+      name##_NOTHING_by_form(dim, form, n, x, start);                                \
+  }
+
 /* --- sources and walls ------------------------------------------------------------------------------------ */
 
 /* What times the sources of a substep are taken at. */

@@ -44,11 +44,18 @@ CF_KERNEL cf_real k_at(const int varies, const stage *s, const int a, const ptrd
   return varies ? s->k_face[a][p] : s->k;
 }
 
-CF_KERNEL cf_real capacity_at(const stage *s, const ptrdiff_t p) {
-  return s->capacity != NULL ? s->capacity[p] : 1;
+/* d W, and what a loss of `out` makes of phi; what `acts` says. */
+CF_KERNEL cf_real gain_at(const int acts, const stage *s, const ptrdiff_t p) {
+  return acts == CF_ACTS_SOURCE || (acts == CF_ACTS_ALL && s->W != NULL) ? s->d * s->W[p] : 0;
 }
 
-CF_KERNEL cf_real gain_at(const stage *s, const ptrdiff_t p) { return s->W != NULL ? s->d * s->W[p] : 0; }
+CF_KERNEL cf_real lost_at(const int acts, const stage *s, const ptrdiff_t p, const cf_real out) {
+  return acts == CF_ACTS_ALL ? out / s->capacity[p] : out;
+}
+
+CF_KERNEL cf_real content_at(const int acts, const stage *s, const ptrdiff_t p, const cf_real phi) {
+  return acts == CF_ACTS_ALL ? s->capacity[p] * phi : phi;
+}
 
 /* k (x_p - x_{p-a}) on the low face of axis a of cell p. */
 CF_KERNEL cf_real slope_at(const int varies, const stage *s, const int a, const ptrdiff_t p) {
@@ -60,7 +67,7 @@ CF_KERNEL cf_real flux_at(const int varies, const stage *s, const int a, const p
   return s->flux_q * s->q[a][p] - s->flux_k * slope_at(varies, s, a, p);
 }
 
-CF_KERNEL void right_side_row(const int dim, const int scalar, const int n, const stage *s,
+CF_KERNEL void right_side_row(const int dim, const int scalar, const int acts, const int n, const stage *s,
                               const ptrdiff_t start) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
@@ -72,12 +79,12 @@ CF_KERNEL void right_side_row(const int dim, const int scalar, const int n, cons
       CF_AXIS_LOOP
       for (int a = 0; a < dim; ++a) div += s->q[a][p + s->stride[a]] - s->q[a][p];
     }
-    s->b[p] = capacity_at(s, p) * (s->phi[p] + gain_at(s, p)) - s->rhs * div;
+    s->b[p] = content_at(acts, s, p, s->phi[p] + gain_at(acts, s, p)) - s->rhs * div;
   }
 }
-CF_CLONED_FORMS(right_side_row, const stage *, const ptrdiff_t)
+CF_CLONED_ACTS(right_side_row, const stage *)
 
-CF_KERNEL void cells_row(const int dim, const int varies, const int n, const stage *s,
+CF_KERNEL void cells_row(const int dim, const int varies, const int acts, const int n, const stage *s,
                          const ptrdiff_t start) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
@@ -85,13 +92,13 @@ CF_KERNEL void cells_row(const int dim, const int varies, const int n, const sta
     cf_real div = 0;
     CF_AXIS_LOOP
     for (int a = 0; a < dim; ++a) div += flux_at(varies, s, a, p + s->stride[a]) - flux_at(varies, s, a, p);
-    s->phi[p] += s->weight * (gain_at(s, p) - div / capacity_at(s, p));
+    s->phi[p] += s->weight * (gain_at(acts, s, p) - lost_at(acts, s, p, div));
   }
 }
-CF_CLONED_FORMS(cells_row, const stage *, const ptrdiff_t)
+CF_CLONED_ACTS(cells_row, const stage *)
 
 /* Cells and memory of the scalar form. */
-CF_KERNEL void scalar_row(const int dim, const int varies, const int n, const stage *s,
+CF_KERNEL void scalar_row(const int dim, const int varies, const int acts, const int n, const stage *s,
                           const ptrdiff_t start) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
@@ -103,11 +110,11 @@ CF_KERNEL void scalar_row(const int dim, const int varies, const int n, const st
       bend += slope_at(varies, s, a, p + s->stride[a]) - slope_at(varies, s, a, p);
     const cf_real fresh = s->face_q * old - s->face_k * bend;
     const cf_real div = s->flux_q * old - s->flux_k * bend;
-    s->phi[p] += s->weight * (gain_at(s, p) - div / capacity_at(s, p));
+    s->phi[p] += s->weight * (gain_at(acts, s, p) - lost_at(acts, s, p, div));
     s->s[p] = old + s->weight * (fresh - old);
   }
 }
-CF_CLONED_FORMS(scalar_row, const stage *, const ptrdiff_t)
+CF_CLONED_ACTS(scalar_row, const stage *)
 
 /* One axis' faces. */
 CF_KERNEL void faces_of_axis(const int varies, const int n, const stage *s, const int a,
