@@ -46,6 +46,15 @@ CF_PARAM_TABLE(cf_scene_output, CF_OUTPUT_TABLE)
 #define CF_PARAM_STRUCT cf_scene_snowfall
 CF_PARAM_TABLE(cf_scene_snowfall, CF_SNOWFALL_TABLE)
 #undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_camera
+CF_PARAM_TABLE(cf_scene_camera, CF_RENDER_CAMERA_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_light
+CF_PARAM_TABLE(cf_scene_light, CF_RENDER_LIGHT_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_render
+CF_PARAM_TABLE(cf_scene_render, CF_RENDER_TABLE)
+#undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene
 CF_PARAM_TABLE(cf_scene, CF_SCENE_TABLE)
 #undef CF_PARAM_STRUCT

@@ -21,6 +21,7 @@
 #include "base/param.h"
 #include "base/status.h"
 #include "cattaneo.h"
+#include "model/render_keys.h"
 #include "model/snowfall_keys.h"
 
 /* --- words: W(UPPER, as a scene writes it) ---------------------------------------------------- */
@@ -230,7 +231,8 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   R(list, sources, cf_scene_source, "What is added to fields, or holds them")            \
   R(record, snowfall, cf_scene_snowfall, "Flakes falling, of model snowfall")            \
   R(record, solver, cf_scene_solver, "The linear solver")                                \
-  R(record, output, cf_scene_output, "What is written, and how often")
+  R(record, output, cf_scene_output, "What is written, and how often")                   \
+  R(record, render, cf_scene_render, "How `cattaneo render` and `cattaneo movie` show it")
 
 /* --- structs ---------------------------------------------------------------------------------- */
 

@@ -28,6 +28,12 @@ double cf_plot_left_room(const cf_plot *plot);
 
 cf_status cf_plot_lines(cf_canvas *c, const cf_plot *plot, int lines, const cf_polyline *line);
 
+/* `count` lines of equal value at equal steps between the ends of the scale. */
+cf_status cf_plot_contours(cf_canvas *c, const cf_plot *plot, const cf_scale *scale, int count);
+
+/* Arrows on a lattice, the longest as long as the lattice is wide. */
+cf_status cf_plot_arrows(cf_canvas *c, const cf_plot *plot, const cf_plane part[2]);
+
 /* A colour bar in the box at (x, y), numbers on its right. */
 cf_status cf_plot_bar(cf_canvas *c, const int box[4], double font, const cf_scale *scale);
 

@@ -94,20 +94,33 @@ static cf_status draw_words(cf_canvas *c, const layout *l, const cf_plane *plane
   return cf_plot_fitted(c, &caption, l->plot.x - 1, l->caption_line, l->room, text);
 }
 
-static cf_status draw_all(cf_canvas *c, const layout *l, const cf_scale *scale, const cf_preview *p) {
+static cf_status draw_arrows(cf_canvas *c, const layout *l, const cf_grid *g, const cf_preview *p) {
+  cf_plane part[2] = {{.at = NULL}, {.at = NULL}};
+  cf_status s = cf_plane_create(&part[0], g, p->arrows[0], p);
+  if (s == CF_OK) s = cf_plane_create(&part[1], g, p->arrows[1], p);
+  if (s == CF_OK) s = cf_plot_arrows(c, &l->plot, part);
+  cf_plane_destroy(&part[1]);
+  cf_plane_destroy(&part[0]);
+  return s;
+}
+
+static cf_status draw_all(cf_canvas *c, const layout *l, const cf_grid *g, const cf_scale *scale,
+                          const cf_preview *p) {
   CF_TRY(cf_plot_field(c, &l->plot, scale, p->cells));
+  if (p->contours > 0) CF_TRY(cf_plot_contours(c, &l->plot, scale, p->contours));
+  if (p->arrows[0] != NULL && p->arrows[1] != NULL && g->box.dim == 2) CF_TRY(draw_arrows(c, l, g, p));
   CF_TRY(cf_plot_lines(c, &l->plot, p->lines, p->line));
   CF_TRY(cf_plot_axes(c, &l->plot, true, true));
   CF_TRY(cf_plot_bar(c, l->bar, l->font, scale));
   return draw_words(c, l, l->plot.plane, p);
 }
 
-static cf_status draw_plane(cf_canvas *c, const cf_plane *plane, const cf_preview *p) {
+static cf_status draw_plane(cf_canvas *c, const cf_grid *g, const cf_plane *plane, const cf_preview *p) {
   cf_scale scale;
   CF_TRY(cf_plane_scale(&scale, 1, plane, p));
   const layout l = lay_out(plane, &scale, p);
   CF_TRY(cf_canvas_create(c, l.width, l.height, cf_plot_ground));
-  const cf_status s = draw_all(c, &l, &scale, p);
+  const cf_status s = draw_all(c, &l, g, &scale, p);
   if (s != CF_OK) cf_canvas_destroy(c);
   return s;
 }
@@ -116,7 +129,7 @@ cf_status cf_preview_draw(cf_canvas *c, const cf_grid *g, const cf_real *f, cons
   cf_plane plane;
   *c = (cf_canvas){.rgb = NULL};
   CF_TRY(cf_plane_create(&plane, g, f, p));
-  const cf_status s = draw_plane(c, &plane, p);
+  const cf_status s = draw_plane(c, g, &plane, p);
   cf_plane_destroy(&plane);
   return s;
 }

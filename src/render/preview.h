@@ -44,6 +44,8 @@ typedef struct cf_preview {
   int axis;             /* 3D only: the axis looked along, 0..2; 3: none given, z */
   int lines;
   const cf_polyline *line;
+  int contours;             /* lines of equal value, so many between the ends of the range; 0: none */
+  const cf_real *arrows[2]; /* 2D only: a vector field, its parts along x and y; NULL: none */
 } cf_preview;
 
 /* Nothing shown but the field. */
