@@ -114,27 +114,36 @@ cf_status cf_image_write(const char *path, const int width, const int height, co
   return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", path, why.text);
 }
 
-cf_status cf_image_read(const char *path, int *width, int *height, uint8_t **rgb) {
+static cf_status read_as(const char *path, const png_uint_32 format, int *width, int *height,
+                         uint8_t **pixels) {
   png_image image = {.version = PNG_IMAGE_VERSION};
   const png_color white = {255, 255, 255};
-  *rgb = NULL;
+  *pixels = NULL;
   if (!png_image_begin_read_from_file(&image, path))
     return cf_fail(CF_BAD_FILE, "%s: is no PNG picture that can be read: %s", path, image.message);
-  image.format = PNG_FORMAT_RGB;
+  image.format = format;
   cf_status s = CF_OK;
   if (image.width > CF_IMAGE_SIDE_MAX || image.height > CF_IMAGE_SIDE_MAX)
     s = cf_fail(CF_BAD_FILE, "%s: %u x %u pixels: sides must be 1 to %d", path, image.width, image.height,
                 CF_IMAGE_SIDE_MAX);
-  if (s == CF_OK) s = CF_NEW(rgb, PNG_IMAGE_SIZE(image));
-  if (s == CF_OK && !png_image_finish_read(&image, &white, *rgb, 0, NULL))
+  if (s == CF_OK) s = CF_NEW(pixels, PNG_IMAGE_SIZE(image));
+  if (s == CF_OK && !png_image_finish_read(&image, &white, *pixels, 0, NULL))
     s = cf_fail(CF_BAD_FILE, "%s: cannot be read: %s", path, image.message);
   png_image_free(&image);
   if (s != CF_OK) {
-    cf_free(*rgb);
-    *rgb = NULL;
+    cf_free(*pixels);
+    *pixels = NULL;
     return s;
   }
   *width = (int)image.width;
   *height = (int)image.height;
   return CF_OK;
+}
+
+cf_status cf_image_read(const char *path, int *width, int *height, uint8_t **rgb) {
+  return read_as(path, PNG_FORMAT_RGB, width, height, rgb);
+}
+
+cf_status cf_image_read_cover(const char *path, int *width, int *height, uint8_t **rgba) {
+  return read_as(path, PNG_FORMAT_RGBA, width, height, rgba);
 }

@@ -26,4 +26,7 @@ cf_status cf_image_write(const char *path, int width, int height, const uint8_t 
  * cf_free. CF_BAD_FILE. */
 cf_status cf_image_read(const char *path, int *width, int *height, uint8_t **rgb);
 
+/* The same as red, green, blue and how much of the pixel they cover (not multiplied by it). */
+cf_status cf_image_read_cover(const char *path, int *width, int *height, uint8_t **rgba);
+
 #endif
