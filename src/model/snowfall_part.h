@@ -59,4 +59,13 @@ void cf_snowfall_flake(const cf_snowfall *s, int64_t id, int kind, double radius
 
 double cf_snowfall_mass_in_air(const cf_snowfall *s);
 
+/* snowfall_show.c: of cf_model. */
+bool cf_snowfall_shows(const cf_scene *scene, const char *name);
+bool cf_snowfall_derived(const void *model, int i, cf_derived *field);
+cf_status cf_snowfall_derive(void *model, int which, cf_cell out);
+cf_status cf_snowfall_mesh(void *model, struct cf_mesh *mesh);
+bool cf_snowfall_describe(const void *model, int line, char *text, size_t size);
+int cf_snowfall_metric_names(const void *model, cf_metric *names);
+void cf_snowfall_metrics(const void *model, double *values);
+
 #endif
