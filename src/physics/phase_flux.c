@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * X = eps^2 div_* J(p). On the low face of axis a, between the cells p - a and p, with b (and c) the other axes,
+ *
+ *     p_a = [10 d(p) + d(p+b) + d(p-b)]/(12 h),   d(q) = eta_q - eta_{q-a}     (3D: 8 d(p) and four neighbours)
+ *     p_b = [(eta_{p+b} - eta_{p-b}) + (eta_{p-a+b} - eta_{p-a-b})]/(4 h)
+ *
+ * With these weights the Laplacian's error is isotropic to fourth order, and the anisotropy of a crystal is its own
+ * and not the grid's. The sums are grouped so that a mirrored field gives mirrored fluxes to the last bit.
+ *
+ * No flux passes an insulated wall, whatever the crystal's angle to it.
+ *
+ * One law on every face once: a thread walks over its slab of rows and keeps the fluxes that the next row or plane
+ * shares. Where eta is 0 all around, X is 0 and costs nothing.
+ */
+#include <string.h>
+
+#include "grid/halo.h"
+#include "physics/phase_part.h"
+
+/* What the kernel of a row of faces reads and writes. */
+typedef struct faces {
+  ptrdiff_t stride[3];
+  const cf_real *eta, *e, *C, *S;
+  const cf_anisotropy *law;
+  cf_facing facing;
+  cf_real centre, side;         /* weights of d(p), and of d at its neighbours, times h */
+  cf_real star[3], across[3];   /* per axis: Gamma/h of normal, Gamma/(4 h) of transverse differences */
+  cf_real scale[3], main, rest; /* eps^2 Gamma/h; which parts of J */
+  cf_real *out;
+} faces;
+
+CF_KERNEL cf_facing facing_at(const int varies, const faces *f, const int a, const ptrdiff_t p) {
+  if (!varies) return f->facing;
+  const ptrdiff_t o = p - f->stride[a];
+  const cf_real half = (cf_real)0.5;
+  return (cf_facing){half * (f->e[o] + f->e[p]), half * (f->C[o] + f->C[p]), half * (f->S[o] + f->S[p])};
+}
+
+/* eta_{q} - eta_{q-a}. */
+CF_KERNEL cf_real step_at(const faces *f, const int a, const ptrdiff_t q) {
+  return f->eta[q] - f->eta[q - f->stride[a]];
+}
+
+CF_KERNEL cf_real side_at(const faces *f, const int a, const int b, const ptrdiff_t p) {
+  return step_at(f, a, p + f->stride[b]) + step_at(f, a, p - f->stride[b]);
+}
+
+CF_KERNEL cf_real across_at(const faces *f, const int a, const int b, const ptrdiff_t p) {
+  const ptrdiff_t o = p - f->stride[a], s = f->stride[b];
+  return f->across[b] * ((f->eta[p + s] - f->eta[p - s]) + (f->eta[o + s] - f->eta[o - s]));
+}
+
+CF_KERNEL cf_real normal_at(const int dim, const faces *f, const int a, const int b, const int c,
+                            const ptrdiff_t p) {
+  cf_real sides = side_at(f, a, b, p);
+  if (dim == 3) sides += side_at(f, a, c, p);
+  return f->star[a] * (f->centre * step_at(f, a, p) + f->side * sides);
+}
+
+/* p = grad_* eta on the low face of axis a of cell p. */
+CF_KERNEL cf_vec gradient_at(const int dim, const faces *f, const int a, const ptrdiff_t p) {
+  const int b = a == 0 ? 1 : 0, c = a == 2 ? 1 : 2;
+  const cf_real normal = normal_at(dim, f, a, b, c, p), first = across_at(f, a, b, p);
+  const cf_real second = dim == 3 ? across_at(f, a, c, p) : 0;
+  if (a == 0) return (cf_vec){normal, first, second};
+  if (a == 1) return (cf_vec){first, normal, second};
+  return (cf_vec){first, second, normal};
+}
+
+CF_KERNEL void faces_of_axis(const int dim, const int facets, const int varies, const int a, const int n,
+                             const faces *f, const ptrdiff_t start) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    const cf_vec p = gradient_at(dim, f, a, start + i);
+    const cf_vec J =
+        cf_anisotropy_flux(dim, facets, f->law, facing_at(varies, f, a, start + i), p, f->main, f->rest);
+    f->out[i] = f->scale[a] * (a == 0 ? J.x : a == 1 ? J.y : J.z);
+  }
+}
+
+typedef void faces_row(int axis, int n, const faces *f, ptrdiff_t start);
+
+#define FACES_ROW(name, dim, facets, varies)                                                       \
+  CF_CLONES static void name(const int axis, const int n, const faces *f, const ptrdiff_t start) { \
+    if (axis == 0)                                                                                 \
+      faces_of_axis(dim, facets, varies, 0, n, f, start);                                          \
+    else if (axis == 1)                                                                            \
+      faces_of_axis(dim, facets, varies, 1, n, f, start);                                          \
+    else if (dim == 3)                                                                             \
+      faces_of_axis(dim, facets, varies, 2, n, f, start);                                          \
+  }
+#define FACES_ROWS(facets)                      \
+  FACES_ROW(faces_2_##facets##_0, 2, facets, 0) \
+  FACES_ROW(faces_2_##facets##_1, 2, facets, 1) \
+  FACES_ROW(faces_3_##facets##_0, 3, facets, 0) \
+  FACES_ROW(faces_3_##facets##_1, 3, facets, 1)
+FACES_ROWS(CF_FACETS_NONE)
+FACES_ROWS(CF_FACETS_FOUR)
+FACES_ROWS(CF_FACETS_SIX)
+FACES_ROWS(CF_FACETS_ANY)
+FACES_ROWS(CF_FACETS_CUBIC)
+
+static faces_row *faces_row_of(const int dim, const cf_facets facets, const bool varies) {
+#define FACES_NAMES(facets) \
+  {{faces_2_##facets##_0, faces_2_##facets##_1}, {faces_3_##facets##_0, faces_3_##facets##_1}},
+  static faces_row *const rows[CF_FACETS_COUNT][2][2] = {FACES_NAMES(CF_FACETS_NONE) FACES_NAMES(
+      CF_FACETS_FOUR) FACES_NAMES(CF_FACETS_SIX) FACES_NAMES(CF_FACETS_ANY) FACES_NAMES(CF_FACETS_CUBIC)};
+#undef FACES_NAMES
+  return rows[facets][dim - 2][varies];
+}
+
+static faces faces_of(const cf_phase *p, const cf_phase_part part, const cf_cell eta) {
+  const int dim = p->grid->box.dim;
+  const double h = p->grid->h, eps2 = p->p.width * p->p.width;
+  faces f = {
+      .eta = eta.at, .e = p->places.strength.at, .C = p->places.C.at, .S = p->places.S.at, .law = &p->law};
+  f.facing = (cf_facing){(cf_real)p->law.strength, (cf_real)p->law.C, (cf_real)p->law.S};
+  f.centre = (cf_real)(dim == 3 ? 8.0 / 12 : 10.0 / 12);
+  f.side = (cf_real)(1.0 / 12);
+  f.main = part != CF_PHASE_X_2;
+  f.rest = part != CF_PHASE_X_1;
+  for (int a = 0; a < dim; ++a) {
+    const double star = a == 2 ? p->p.star : 1;
+    f.stride[a] = p->grid->box.stride[a];
+    f.star[a] = (cf_real)(star / h);
+    f.across[a] = (cf_real)(star / (4 * h));
+    f.scale[a] = (cf_real)(eps2 * star / h);
+  }
+  return f;
+}
+
+/* --- rows with nothing in them ---------------------------------------------------------------------------- */
+
+CF_CLONES static cf_real largest_in_row(const int n, const cf_real *row) {
+  cf_real most = 0;
+#pragma omp simd reduction(max : most)
+  for (int i = 0; i < n; ++i) {
+    const cf_real size = row[i] < 0 ? -row[i] : row[i];
+    most = size > most ? size : most;
+  }
+  return most;
+}
+
+/* sums[r] = 0 where row r of eta has nothing but 0. */
+static void find_rows(const cf_phase *p, const cf_cell eta) {
+  const cf_box *box = &p->grid->box;
+  CF_PARALLEL_ROWS (box, p->grid->threads, r)
+    p->sums[r] = (double)largest_in_row(box->n[0], eta.at + cf_box_row(box, r));
+}
+
+static int inside(const cf_phase *p, const int a, const int i) {
+  const int n = p->grid->box.n[a];
+  if (i >= 0 && i < n) return i;
+  if (p->eta_walls.walls.kind[a][0] == CF_WALL_PERIODIC) return i < 0 ? n - 1 : 0;
+  return i < 0 ? 0 : n - 1;
+}
+
+static bool is_quiet(const cf_phase *p, const bool held, const int j, const int k) {
+  const cf_box *box = &p->grid->box;
+  const int reach = box->dim == 3 ? 1 : 0;
+  if (held) return false;
+  for (int c = -reach; c <= reach; ++c)
+    for (int b = -1; b <= 1; ++b)
+      if (p->sums[inside(p, 1, j + b) + (ptrdiff_t)box->n[1] * inside(p, 2, k + c)] != 0) return false;
+  return true;
+}
+
+static bool has_held_wall(const cf_phase *p) {
+  for (int a = 0; a < p->grid->box.dim; ++a)
+    for (int side = 0; side < 2; ++side)
+      if (p->eta_walls.at[a][side] != NULL) return true;
+  return false;
+}
+
+/* --- slabs ------------------------------------------------------------------------------------------------ */
+
+typedef struct slab {
+  const cf_phase *p;
+  cf_phase_rows *rows;
+  faces f;
+  faces_row *row;
+  bool held;
+  cf_phase_visit *visit;
+  void *context;
+} slab;
+
+static bool is_closed(const cf_phase *p, const int a, const int side) {
+  return p->eta_walls.walls.kind[a][side] == CF_WALL_INSULATED;
+}
+
+/* Faces number i of axis a (a wall at 0 and n) of the row that starts at `start`, into out. */
+static void face_row(slab *s, const int a, const int i, const ptrdiff_t start, cf_real *out) {
+  const cf_box *box = &s->p->grid->box;
+  if ((i == 0 && is_closed(s->p, a, 0)) || (i == box->n[a] && is_closed(s->p, a, 1))) {
+    memset(out, 0, (size_t)box->n[0] * sizeof *out);
+    return;
+  }
+  s->f.out = out;
+  s->row(a, box->n[0], &s->f, start);
+}
+
+CF_CLONES static void div_row(const int n, const cf_phase_rows *w, const cf_real *z_low, cf_real *div) {
+  if (z_low == NULL) {
+    CF_ROW_LOOP
+    for (int i = 0; i < n; ++i) div[i] = (w->x[i + 1] - w->x[i]) + (w->y[i] - w->low[i]);
+    return;
+  }
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i)
+    div[i] = ((w->x[i + 1] - w->x[i]) + (w->y[i] - w->low[i])) + (w->z[i] - z_low[i]);
+}
+
+static void row_of_slab(slab *s, const int j, const int k) {
+  const cf_box *box = &s->p->grid->box;
+  cf_phase_rows *w = s->rows;
+  const int n = box->n[0];
+  const size_t bytes = (size_t)n * sizeof *w->y;
+  const ptrdiff_t start = cf_box_at(box, 0, j, k);
+  cf_real *z_low = box->dim == 3 ? w->plane + (ptrdiff_t)n * j : NULL;
+  w->quiet = is_quiet(s->p, s->held, j, k);
+  if (w->quiet) {
+    memset(w->div, 0, bytes);
+    memset(w->low, 0, bytes);
+    if (z_low != NULL) memset(z_low, 0, bytes);
+    return;
+  }
+  s->f.out = w->x;
+  s->row(0, n + 1, &s->f, start);
+  if (is_closed(s->p, 0, 0)) w->x[0] = 0;
+  if (is_closed(s->p, 0, 1)) w->x[n] = 0;
+  face_row(s, 1, j + 1, start + box->stride[1], w->y);
+  if (z_low != NULL) face_row(s, 2, k + 1, start + box->stride[2], w->z);
+  div_row(n, w, z_low, w->div);
+  memcpy(w->low, w->y, bytes);
+  if (z_low != NULL) memcpy(z_low, w->z, bytes);
+}
+
+/* Rows [from, to) of the outermost axis. */
+static void run_slab(slab *s, const int from, const int to) {
+  const cf_box *box = &s->p->grid->box;
+  const bool space = box->dim == 3;
+  if (space)
+    for (int j = 0; j < box->n[1]; ++j)
+      face_row(s, 2, from, cf_box_at(box, 0, j, from), s->rows->plane + (ptrdiff_t)box->n[0] * j);
+  for (int k = space ? from : 0; k < (space ? to : 1); ++k) {
+    const int first = space ? 0 : from, last = space ? box->n[1] : to;
+    face_row(s, 1, first, cf_box_at(box, 0, first, k), s->rows->low);
+    for (int j = first; j < last; ++j) {
+      row_of_slab(s, j, k);
+      s->visit(s->p, s->rows, cf_box_at(box, 0, j, k), j + (ptrdiff_t)box->n[1] * k, s->context);
+    }
+  }
+}
+
+void cf_phase_each_row(const cf_phase *p, const cf_phase_part part, const cf_cell eta, cf_phase_visit *visit,
+                       void *context) {
+  const cf_box *box = &p->grid->box;
+  const int outer = box->n[box->dim - 1];
+  const int threads = CF_MIN(CF_MIN(p->threads, cf_sweep_threads(box, p->grid->threads)), outer);
+  const faces f = faces_of(p, part, eta);
+  faces_row *const row = faces_row_of(box->dim, p->law.facets, p->places.strength.at != NULL);
+  const bool held = has_held_wall(p);
+  find_rows(p, eta);
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int t = 0; t < threads; ++t) {
+    slab s = {p, &p->rows[t], f, row, held, visit, context};
+    run_slab(&s, (int)((ptrdiff_t)outer * t / threads), (int)((ptrdiff_t)outer * (t + 1) / threads));
+  }
+}
+
+void cf_phase_ghosts(const cf_phase *p, const cf_cell eta) { cf_wall_ghosts(&p->eta_walls, eta); }

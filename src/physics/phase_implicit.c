@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Implicit steps of the phase. A stage of length d, with everything at its end,
+ *
+ *     tau_eta (e - eta*)/d = r + F R,   (tau_1 + d) r = tau_1 r* + d (1 - F) R,   R = X(e) + f(e),
+ *
+ * is one equation for e once r is eliminated,
+ *
+ *     tau_eta e - c R(e) = tau_eta eta* + m r*,     c = d (d + F tau_1)/(tau_1 + d),  m = d tau_1/(tau_1 + d).
+ *
+ * It is solved by passes around the one solver. In each, f is linearised where that pulls (J = min(f', 0), so that the
+ * matrix stays positive definite for any d), and of X only as much isotropic diffusion is implicit as bounds it,
+ *
+ *     (tau_eta - c J - c eps^2 a^2 div_* grad_*) e' = tau_eta eta* + m r* + c [f(e) - J e + X(e) - eps^2 a^2 lap_* e],
+ *
+ * a = max A, which is enough for every convex A. Two passes from e = eta* keep the second order of SDIRK2,
+ * which takes two such stages; one would not, nor would a looser tolerance than about 1e-6.
+ *
+ * psi takes T = H + K e with H = T - K eta, which only diffusion moves, extrapolated over the step: so the latent heat
+ * that slows an interface down within the step is seen in it, and steps of tau_eta and more stay sound.
+ *
+ * tau_eta = 0 is an ordinary value: the interface is then in equilibrium with T at all times.
+ */
+#include <math.h>
+
+#include "physics/phase_part.h"
+
+enum { PASSES = 2 };
+
+/* What a step changes is a small part of what the right side holds: of the solver's tolerance, which is relative to
+ * the latter, this much is asked for. */
+#define OF_A_STEP 0.01
+
+/* A mask of 0 would be an infinite tau_eta. */
+#define LEAST_MOBILITY 1e-9
+
+typedef struct stage {
+  double delta, c, m, bound; /* bound = eps^2 a^2 */
+  double pull;               /* tau_1/(tau_1 + d) */
+  double weight;             /* of the stage's change: y <- y* + weight (y - y*) */
+  cf_cell eta, r;            /* eta*, r* */
+} stage;
+
+/* tau_eta of the cells of a row, with mobility and A^2 in it. */
+static void tau_row(const cf_phase *p, cf_phase_rows *rows, const cf_real *eta, const ptrdiff_t start) {
+  const int n = p->grid->box.n[0];
+  if (p->p.karma_rappel) cf_phase_A2_row(p, eta, start, rows->A2);
+  for (int i = 0; i < n; ++i) {
+    const double A2 = p->p.karma_rappel ? (double)rows->A2[i] : 1;
+    const double mobility = p->places.mobility.at != NULL ? (double)p->places.mobility.at[start + i] : 1;
+    rows->rate[i] = (cf_real)(p->p.tau_eta * A2 / CF_MAX(mobility, LEAST_MOBILITY));
+  }
+}
+
+typedef struct equation {
+  ptrdiff_t stride[3];
+  cf_real star2[3], c, bound;     /* Gamma^2/h^2; eps^2 a^2 */
+  const cf_real *e, *eta;         /* fields */
+  const cf_real *tau, *X, *f, *J; /* rows */
+  cf_real *alpha, *b;
+} equation;
+
+CF_KERNEL void equation_row(const int dim, const int n, const equation *q, const ptrdiff_t start) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    const ptrdiff_t p = start + i;
+    const cf_real e = q->e[p];
+    cf_real bend = 0;
+    CF_AXIS_LOOP
+    for (int a = 0; a < dim; ++a) {
+      const ptrdiff_t s = q->stride[a];
+      bend += q->star2[a] * ((q->e[p + s] - e) - (e - q->e[p - s]));
+    }
+    q->alpha[p] = q->tau[i] - q->c * q->J[i];
+    q->b[p] = q->tau[i] * q->eta[p] + q->c * ((q->f[i] - q->J[i] * e) + (q->X[i] - q->bound * bend));
+  }
+}
+CF_CLONED(equation_row, const equation *, const ptrdiff_t)
+
+static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start, const ptrdiff_t r,
+                  void *context) {
+  const stage *s = context;
+  const cf_box *box = &p->grid->box;
+  (void)r;
+  cf_phase_react f = cf_phase_react_of(p, rows, p->x.at, start);
+  f.T = p->h.at + start;
+  f.lean = rows->x; /* the fluxes in x have been used */
+  cf_phase_react_row(box->n[0], &f);
+  tau_row(p, rows, p->x.at, start);
+  equation q = {.c = (cf_real)s->c, .bound = (cf_real)s->bound, .e = p->x.at, .eta = s->eta.at};
+  q.tau = rows->rate, q.X = rows->div, q.f = rows->react, q.J = rows->x;
+  q.alpha = p->alpha.at, q.b = p->b.at;
+  for (int a = 0; a < box->dim; ++a) {
+    const double star = (a == 2 ? p->p.star : 1) / p->grid->h;
+    q.stride[a] = box->stride[a];
+    q.star2[a] = (cf_real)(star * star);
+  }
+  equation_row_by_dim(box->dim, box->n[0], &q, start);
+  if (s->r.at == NULL) return;
+  for (int i = 0; i < box->n[0]; ++i) p->b.at[start + i] += (cf_real)s->m * s->r.at[start + i];
+}
+
+static void fill_row(const int n, const cf_real value, cf_real *to) {
+  for (int i = 0; i < n; ++i) to[i] = value;
+}
+
+/* beta on faces; Gamma makes it another number along z. */
+static void set_beta(cf_phase *p, const double beta) {
+  const cf_box *box = &p->grid->box;
+  p->beta_is = beta;
+  for (int a = 0; a < box->dim; ++a) {
+    const int n1 = cf_box_extent(box, 1, a), n2 = cf_box_extent(box, 2, a);
+    for (int r = 0; r < n1 * n2; ++r)
+      fill_row(cf_box_extent(box, 0, a), (cf_real)(a == 2 ? beta * p->p.star * p->p.star : beta),
+               p->beta.at[a] + cf_box_at(box, 0, r % n1, r / n1));
+  }
+}
+
+static cf_status pass(cf_phase *p, stage *s, cf_solve_report *report) {
+  cf_solve_report one;
+  cf_solve_options o = p->p.solver;
+  o.tolerance = CF_MAX(o.tolerance * OF_A_STEP, 64 * CF_REAL_EPSILON);
+  cf_phase_ghosts(p, p->x);
+  cf_phase_each_row(p, CF_PHASE_X, p->x, visit, s);
+  if (s->c * s->bound != p->beta_is) set_beta(p, s->c * s->bound);
+  CF_TRY(cf_helmholtz_set(p->A, &(cf_coefficients){.alpha_at = &p->alpha, .beta_at = &p->beta}));
+  cf_helmholtz_add_walls(p->A, &p->eta_walls, p->b);
+  CF_TRY(cf_helmholtz_solve(p->A, p->b, &o, p->x, &one));
+  report->iterations += one.iterations;
+  report->levels = one.levels;
+  report->residual = CF_MAX(report->residual, one.residual);
+  report->converged = report->converged && one.converged;
+  report->method = one.method;
+  return CF_OK;
+}
+
+/* r of the stage from what moved eta, and both weighted. */
+static void finish(cf_phase *p, const stage *s) {
+  const cf_box *box = &p->grid->box;
+  const double F = p->p.f_eta, tau_1 = p->p.tau_1, d = s->delta;
+  CF_PARALLEL_ROWS (box, p->grid->threads, r) {
+    const ptrdiff_t start = cf_box_row(box, r);
+    for (int i = 0; i < box->n[0]; ++i) {
+      const ptrdiff_t q = start + i;
+      const double old = (double)s->eta.at[q], change = (double)p->x.at[q] - old;
+      if (s->r.at != NULL) {
+        const double m =
+            p->places.mobility.at != NULL ? CF_MAX((double)p->places.mobility.at[q], LEAST_MOBILITY) : 1;
+        const double was = (double)s->r.at[q];
+        /* c R = tau_eta (e - eta*) - m r*, so (1 - F) d/(tau_1 + d) R = (1 - F)/(d + F tau_1) (...) */
+        const double now =
+            s->pull * was + (1 - F) / (d + F * tau_1) * (p->p.tau_eta / m * change - s->m * was);
+        s->r.at[q] = (cf_real)(was + s->weight * (now - was));
+      }
+      s->eta.at[q] = (cf_real)(old + s->weight * change);
+    }
+  }
+}
+
+static void set_field(const cf_phase *p, const cf_cell from, const cf_cell before, const double ahead,
+                      const cf_cell to) {
+  const cf_box *box = &p->grid->box;
+  CF_PARALLEL_ROWS (box, p->grid->threads, r) {
+    const ptrdiff_t start = cf_box_row(box, r);
+    for (int i = 0; i < box->n[0]; ++i) {
+      const ptrdiff_t q = start + i;
+      to.at[q] = ahead != 0 ? from.at[q] + (cf_real)ahead * (from.at[q] - before.at[q]) : from.at[q];
+    }
+  }
+}
+
+static cf_status run_stage(cf_phase *p, const double t_end, const double delta, const double weight,
+                           const cf_cell eta, const cf_cell r, cf_solve_report *report) {
+  const double tau_1 = p->has_r ? p->p.tau_1 : 0, a = p->bounds.a_max * p->p.width;
+  stage s = {.delta = delta, .weight = weight, .bound = a * a, .eta = eta};
+  s.pull = tau_1 > 0 ? 1 / (1 + delta / tau_1) : 0;
+  s.m = delta * s.pull;
+  s.c = tau_1 > 0 ? (delta * (1 - s.pull) + p->p.f_eta * s.m) : delta;
+  if (p->has_r) s.r = r;
+  cf_wall_values_sample(&p->eta_walls, t_end);
+  set_field(p, eta, eta, 0, p->x);
+  for (int i = 0; i < PASSES; ++i) CF_TRY(pass(p, &s, report));
+  finish(p, &s);
+  return CF_OK;
+}
+
+cf_status cf_phase_step_implicit(cf_phase *p, const double t, const double dt, const cf_phase_heat *heat,
+                                 const cf_cell eta, const cf_cell r, cf_solve_report *report) {
+  const double g = 1 - sqrt(0.5), per = heat->dt_before > 0 ? dt / heat->dt_before : 0;
+  *report = (cf_solve_report){.converged = true};
+  set_field(p, heat->h_now, heat->h_before, g * per, p->h);
+  CF_TRY(run_stage(p, t + g * dt, g * dt, 1 + sqrt(2), eta, r, report));
+  set_field(p, heat->h_now, heat->h_before, per, p->h);
+  return run_stage(p, t + dt, g * dt, 1, eta, r, report);
+}
