@@ -41,6 +41,7 @@ static bool radiates(const cf_scene *scene, const int field) {
 }
 
 static bool moves(const cf_scene *scene) {
+  if (scene->model == CF_SCENE_MODEL_FLOW) return true;
   for (int a = 0; a < scene->velocity.count; ++a) {
     const cf_fn *f = &scene->velocity.axis[a].fn;
     if (!cf_fn_is_constant(f) || f->value != 0) return true;

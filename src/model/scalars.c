@@ -69,7 +69,7 @@ static cf_status move_one(cf_advect *a, cf_scalar *i) {
   if (!i->has_memory) return CF_OK;
   if (i->plan.scalar_form) return cf_advect_cell(a, &i->carried_flux, i->s, NULL);
   if (i->scene->flux_rate == CF_SCENE_FLUX_RATE_PARTIAL) return CF_OK; /* Appendix A's pitfall */
-  return cf_advect_face(a, &i->carried, rate_of(i), i->q);
+  return cf_advect_face(a, &i->walls, rate_of(i), i->q);
 }
 
 cf_status cf_scalars_move(cf_scalars *s, const bool paper, const double t, const double dt,

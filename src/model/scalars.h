@@ -30,6 +30,7 @@ typedef struct cf_scalar {
   cf_cell s;
   cf_walls walls;                 /* what diffusion meets */
   cf_walls carried, carried_flux; /* what the flow meets; s flows in as 0 */
+  bool passes;                    /* the flow takes it through walls that are insulated for diffusion */
   cf_diffuse *diffuse;
   cf_sources *sources;
   cf_ledger ledger;

@@ -148,6 +148,7 @@ static cf_status make_scalar(const cf_scalars *m, cf_scalar *s, cf_registry *r) 
   else
     CF_TRY(cf_face_create(&s->q, &m->grid->box));
   CF_TRY(make_diffuse(m, s));
+  if (s->passes && s->plan.scalar_form) cf_diffuse_let_through(s->diffuse);
   CF_TRY(cf_grid_sample(m->grid, &f->initial.axis[0].fn, CF_CENTRES, 0, s->phi.at));
   if (!s->plan.scalar_form) CF_TRY(initial_flux(m, s));
   s->ledger.first = cf_diffuse_content(s->diffuse, s->phi);
@@ -178,8 +179,9 @@ cf_status cf_scalars_create(cf_scalars *s, const cf_scene *scene, const cf_grid 
 void cf_scalars_open(cf_scalars *s, const int axis, const int side) {
   for (int i = 0; i < s->count; ++i) {
     cf_scalar *one = &s->item[i];
-    if (one->walls.kind[axis][side] == CF_WALL_INSULATED)
-      one->carried.kind[axis][side] = one->carried_flux.kind[axis][side] = CF_WALL_OPEN;
+    if (one->walls.kind[axis][side] != CF_WALL_INSULATED) continue;
+    one->carried.kind[axis][side] = one->carried_flux.kind[axis][side] = CF_WALL_OPEN;
+    one->passes = true;
   }
 }
 

@@ -43,6 +43,15 @@ CF_PARAM_TABLE(cf_scene_preview, CF_PREVIEW_TABLE)
 #define CF_PARAM_STRUCT cf_scene_output
 CF_PARAM_TABLE(cf_scene_output, CF_OUTPUT_TABLE)
 #undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_flow_wall
+CF_PARAM_TABLE(cf_scene_flow_wall, CF_FLOW_WALL_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_flow_inlet
+CF_PARAM_TABLE(cf_scene_flow_inlet, CF_FLOW_INLET_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_flow
+CF_PARAM_TABLE(cf_scene_flow, CF_FLOW_TABLE)
+#undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene_snowfall
 CF_PARAM_TABLE(cf_scene_snowfall, CF_SNOWFALL_TABLE)
 #undef CF_PARAM_STRUCT

@@ -21,12 +21,13 @@
 #include "base/param.h"
 #include "base/status.h"
 #include "cattaneo.h"
+#include "model/flow_keys.h"
 #include "model/render_keys.h"
 #include "model/snowfall_keys.h"
 
 /* --- words: W(UPPER, as a scene writes it) ---------------------------------------------------- */
 
-#define CF_MODEL_WORDS(W) W(TRACER, tracer) W(SNOWFALL, snowfall)
+#define CF_MODEL_WORDS(W) W(TRACER, tracer) W(FLOW, flow) W(SNOWFALL, snowfall)
 #define CF_SCHEME_WORDS(W) \
   W(DEFAULT, default) W(PAPER, paper) W(SDIRK2, sdirk2) W(LEAPFROG, leapfrog) W(WAVE, wave)
 #define CF_SWITCH_WORDS(W) W(OFF, off) W(ON, on)
@@ -213,25 +214,27 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   R(record, checkpoint, cf_scene_checkpoint, "Saved states to resume from")          \
   R(record, preview, cf_scene_preview, "The pictures")
 
-#define CF_SCENE_TABLE(P, R)                                                             \
-  P(cattaneo, integer, CF_REQUIRED, "", "", "Version of the scene format: 1")            \
-  P(title, text, "", "", "", "A line about the scene")                                   \
-  P(model, word, CF_REQUIRED, "", CF_WORDS(CF_MODEL_WORDS),                              \
-    "What is computed: tracer (scalars in a given flow), snowfall (flakes in the wind)") \
-  P(let, constants, CF_NONE, "", "",                                                     \
-    "Names for numbers, for use in expressions and wherever a number stands")            \
-  R(record, domain, cf_scene_domain, "The box and its cells")                            \
-  R(record, time, cf_scene_time, "Steps and frames")                                     \
-  R(record, diffusion, cf_scene_diffusion, "Diffusion of the scalars, eqs 7 to 18")      \
-  R(record, advection, cf_scene_advection, "How the flow carries things")                \
-  R(map, fields, cf_scene_field,                                                         \
-    "The fields by name: scalars, and q or q_NAME for a flux; left out: one scalar phi") \
-  P(velocity, functions, "0", "m/s", "",                                                 \
-    "The flow, one expression in x, y, z, t an axis, evaluated at the faces")            \
-  R(list, sources, cf_scene_source, "What is added to fields, or holds them")            \
-  R(record, snowfall, cf_scene_snowfall, "Flakes falling, of model snowfall")            \
-  R(record, solver, cf_scene_solver, "The linear solver")                                \
-  R(record, output, cf_scene_output, "What is written, and how often")                   \
+#define CF_SCENE_TABLE(P, R)                                                                                \
+  P(cattaneo, integer, CF_REQUIRED, "", "", "Version of the scene format: 1")                               \
+  P(title, text, "", "", "", "A line about the scene")                                                      \
+  P(model, word, CF_REQUIRED, "", CF_WORDS(CF_MODEL_WORDS),                                                 \
+    "What is computed: tracer (scalars in a given flow), flow (a fluid and what it carries), snowfall "     \
+    "(flakes in the wind)")                                                                                 \
+  P(let, constants, CF_NONE, "", "",                                                                        \
+    "Names for numbers, for use in expressions and wherever a number stands")                               \
+  R(record, domain, cf_scene_domain, "The box and its cells")                                               \
+  R(record, time, cf_scene_time, "Steps and frames")                                                        \
+  R(record, diffusion, cf_scene_diffusion, "Diffusion of the scalars, eqs 7 to 18")                         \
+  R(record, advection, cf_scene_advection, "How the flow carries things")                                   \
+  R(map, fields, cf_scene_field,                                                                            \
+    "The fields by name: scalars, and q or q_NAME for a flux; left out: one scalar phi")                    \
+  P(velocity, functions, "0", "m/s", "",                                                                    \
+    "The flow, one expression in x, y, z, t an axis, evaluated at the faces; in model flow that at time 0") \
+  R(list, sources, cf_scene_source, "What is added to fields, or holds them")                               \
+  R(record, flow, cf_scene_flow, "The fluid, of model flow")                                                \
+  R(record, snowfall, cf_scene_snowfall, "Flakes falling, of model snowfall")                               \
+  R(record, solver, cf_scene_solver, "The linear solver")                                                   \
+  R(record, output, cf_scene_output, "What is written, and how often")                                      \
   R(record, render, cf_scene_render, "How `cattaneo render` and `cattaneo movie` show it")
 
 /* --- structs ---------------------------------------------------------------------------------- */

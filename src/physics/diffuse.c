@@ -171,6 +171,8 @@ cf_status cf_diffuse_create(cf_diffuse **d, const cf_grid *g, const cf_walls *wa
   return CF_OK;
 }
 
+void cf_diffuse_let_through(cf_diffuse *d) { d->has_open = true; }
+
 void cf_diffuse_destroy(cf_diffuse *d) {
   if (d == NULL) return;
   const cf_box *box = &d->grid->box;

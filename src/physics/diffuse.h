@@ -19,6 +19,10 @@
 cf_status cf_diffuse_step_scalar(cf_diffuse *d, double t, double dt, cf_cell phi, cf_cell s,
                                  cf_ledger *ledger, cf_solve_report *report);
 
+/* The medium carries s out through walls that are insulated for diffusion: then its integral is not 0, and is what
+ * leaves; the ledger counts it. */
+void cf_diffuse_let_through(cf_diffuse *d);
+
 /* Explicit substeps that a step of dt takes; 1 for implicit schemes. */
 double cf_diffuse_substeps(const cf_diffuse *d, double dt);
 
