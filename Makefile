@@ -7,6 +7,7 @@
 #   make demo       the same, then runs the main example and says where its pictures and data are (under out/)
 #   make test       the same, then every test but the long ones
 #   make test-long  every test
+#   make gallery    makes every picture of the examples and the README (hours; may be stopped and called again)
 #   make format     puts the C files into the project's form (clang-format)
 #   make lint       what can be said about the sources without running them
 #   make clean      removes build/
@@ -17,7 +18,7 @@ BUILD ?= build
 JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
 CTEST  = ctest --test-dir $(BUILD) --output-on-failure -j$(JOBS)
 
-.PHONY: all demo test test-long format lint clean setup setup-tests configure programs
+.PHONY: all demo gallery test test-long format lint clean setup setup-tests configure programs
 
 all: programs
 
@@ -41,6 +42,10 @@ programs: setup
 
 demo: programs
 	@CATTANEO=$(abspath $(BUILD))/bin/cattaneo examples/cone/demo.sh out/cone
+
+gallery: programs
+	@tools/setup.sh gallery
+	@CATTANEO=$(abspath $(BUILD))/bin/cattaneo tools/gallery.sh $(abspath out)/gallery
 
 test: setup-tests
 	@$(MAKE) --no-print-directory configure
