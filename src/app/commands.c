@@ -72,6 +72,24 @@ const cf_command cf_commands[] = {
      "values.\n"
      "  " CF_PROGRAM " sheet out/cones/* -o out/cones.png --columns 4",
      cf_sheet_command},
+    {"render", "DIR...", 1, 64,
+     BIT(OUTPUT) | BIT(STYLE) | BIT(FIELD) | BIT(FRAME) | BIT(SIZE) | BIT(COLUMNS) | BIT(SET) | BIT(THREADS) |
+         BIT(HELP),
+     "make a picture of a finished or running run",
+     "Of its last frame, or of --frame; how it is shown says `render:` in its scene, or --style, and --set "
+     "render.KEY=VALUE for every key there (`explain render`). Without -o the picture is "
+     "DIR/render_<frame>.png. With several folders -o names one picture of all, in one scale.\n"
+     "  " CF_PROGRAM " render out/ink --style smoke --set render.camera.turn=40 -o ink.png",
+     cf_render_command},
+    {"movie", "DIR", 1, 1,
+     BIT(OUTPUT) | BIT(FPS) | BIT(STYLE) | BIT(FIELD) | BIT(SIZE) | BIT(SET) | BIT(THREADS) | BIT(PROGRESS) |
+         BIT(HELP),
+     "make a film of all frames of a run",
+     "Pictures as `render` makes them, in one scale, written as H.264 by the program ffmpeg. Without -o the "
+     "film "
+     "is DIR/movie.mp4; it appears when it is whole.\n"
+     "  " CF_PROGRAM " movie out/ink --fps 30",
+     cf_movie_command},
     {"info", "FILE|DIR", 1, 1, BIT(HELP), "what a frame, a checkpoint or the folder of a run contains",
      "Scene, version and times; of every field the least and largest value, the sum and a checksum. Equal "
      "checksums, equal bits.\n"

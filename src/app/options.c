@@ -23,7 +23,7 @@ const cf_option cf_option_table[CF_OPTIONS] = {
 #undef CF_OPTION_ROW
 };
 
-enum { THREADS_MAX = 1024, COLUMNS_MAX = 64, LONG_ONLY = 256 };
+enum { THREADS_MAX = 1024, COLUMNS_MAX = 64, SIDE_MAX = 16384, LONG_ONLY = 256 };
 
 /* --- values ----------------------------------------------------------------------------------------------- */
 
@@ -100,6 +100,22 @@ static cf_status read_grid(cf_arguments *a, const char *text) {
   return CF_OK;
 }
 
+static cf_status read_size(cf_arguments *a, const char *text) {
+  char cross, more;
+  if (sscanf(text, "%5d%c%5d%c", &a->width, &cross, &a->height, &more) != 3 || cross != 'x' ||
+      a->width < 16 || a->height < 16 || a->width > SIDE_MAX || a->height > SIDE_MAX)
+    return cf_fail(CF_BAD_USAGE, "--size %s: must be like 1280x720, sides from 16 to %d", text, SIDE_MAX);
+  return CF_OK;
+}
+
+static cf_status read_rate(const char *name, const char *text, double *value) {
+  char *end;
+  *value = strtod(text, &end);
+  if (end == text || *end != '\0' || !(*value > 0 && *value <= 1000))
+    return cf_fail(CF_BAD_USAGE, "--%s %s: must be a number above 0 and at most 1000", name, text);
+  return CF_OK;
+}
+
 /* Keeps the value of one option. */
 static cf_status keep(cf_arguments *a, const int option, const char *value) {
   const cf_option *o = &cf_option_table[option];
@@ -122,6 +138,16 @@ static cf_status keep(cf_arguments *a, const int option, const char *value) {
       CF_TRY(read_whole(o->name, value, COLUMNS_MAX, &whole));
       a->columns = (int)whole;
       break;
+    case CF_OPTION_STYLE:
+      a->style = value;
+      break;
+    case CF_OPTION_FRAME:
+      a->frame = value;
+      break;
+    case CF_OPTION_SIZE:
+      return read_size(a, value);
+    case CF_OPTION_FPS:
+      return read_rate(o->name, value, &a->fps);
     case CF_OPTION_FIELD:
       a->field = value;
       break;

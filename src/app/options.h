@@ -22,6 +22,10 @@
   O(JOBS, "jobs", 'j', "N", "runs at the same time; left out: one a processor; they share the threads")       \
   O(COLUMNS, "columns", 0, "N", "pictures in a row of the sheet")                                             \
   O(FIELD, "field", 0, "NAME", "the field in the pictures; left out: that of the previews")                   \
+  O(STYLE, "style", 0, "NAME", "how it is shown: field, ink, smoke, crystal, coral, mesh, gel, particles, cards") \
+  O(FRAME, "frame", 0, "N|last|all", "which frame; left out: the last")                                       \
+  O(SIZE, "size", 0, "WxH", "width and height of the picture in pixels; left out: render.size of the scene")  \
+  O(FPS, "fps", 0, "F", "frames a second; left out: 24")                                                      \
   O(THREADS, "threads", 0, "N", "threads to use; left out: one a processor; the results are the same bits")   \
   O(UNTIL, "until", 0, "T", "stop at this simulated time, in s")                                              \
   O(STEPS, "steps", 0, "N", "stop after so many steps")                                                       \
@@ -71,7 +75,9 @@ typedef struct cf_arguments {
   int grids;
   const char **grid;
   int jobs, columns; /* 0: not given */
-  const char *field;
+  const char *field, *style, *frame;
+  int width, height;          /* of a picture, pixels; 0: not given */
+  double fps;                 /* 0: not given */
   const char *cells, *sigmas; /* lists as given, or NULL */
   int threads;                /* 0: not given */
   double until;               /* s; 0: not given */
