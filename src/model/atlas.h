@@ -44,10 +44,20 @@ typedef struct cf_atlas {
   struct cf_config *config; /* the memory of all texts */
 } cf_atlas;
 
+/* What the picture of the thickness says of a flake, in units of its diameter D = 2 radius. */
+typedef struct cf_atlas_shape {
+  double inertia; /* about its normal through the centre of mass, over m D^2 */
+  double
+      offset[2]; /* of the middle of the silhouette from the centre of mass, x to the right, y up, over D */
+} cf_atlas_shape;
+
 /* Reads the index at `path`; the pictures are not opened. CF_BAD_SCENE with place and line for what is wrong, or if
  * there is no flake in it. */
 cf_status cf_atlas_read(cf_atlas **atlas, const char *path);
 void cf_atlas_destroy(cf_atlas *atlas); /* NULL is fine */
+
+/* From the picture of flake `i`. CF_BAD_FILE: it cannot be read, is not of the size that the atlas says, or is black. */
+cf_status cf_atlas_measure(const cf_atlas *atlas, int i, cf_atlas_shape *shape);
 
 /* The folder that its pictures are in: "." at least. */
 const char *cf_atlas_folder(const cf_atlas *atlas);

@@ -26,16 +26,17 @@ void cf_snowfall_flake(const cf_snowfall *s, const int64_t id, const int kind, c
                        cf_flake *flake) {
   const cf_atlas_flake *a = &s->atlas->flakes.item[kind];
   const double scale = radius / a->radius, D = 2 * radius;
+  const cf_atlas_shape *shape = &s->shape[kind];
   const double off = s->keys->imperfection * D * sqrt(draw(s, STREAM_OFFSET, 0, id));
   const double where = 2 * PI * draw(s, STREAM_OFFSET, 1, id);
-  *flake = (cf_flake){.mass = a->mass * scale * scale * scale,
-                      .diameter = D,
-                      .area = a->area * scale * scale,
-                      .offset = {off * cos(where), off * sin(where)},
-                      .shed_phase = draw(s, STREAM_SHED, 0, id)};
-  /* Arms and plates alike are close to a disc of even mass whose area is theirs. */
-  flake->inertia[1] = flake->mass * flake->area / (2 * PI);
-  flake->inertia[0] = flake->inertia[1] / 2;
+  *flake =
+      (cf_flake){.mass = a->mass * scale * scale * scale,
+                 .diameter = D,
+                 .area = a->area * scale * scale,
+                 .offset = {D * shape->offset[0] + off * cos(where), D * shape->offset[1] + off * sin(where)},
+                 .shed_phase = draw(s, STREAM_SHED, 0, id)};
+  flake->inertia[1] = shape->inertia * flake->mass * D * D;
+  flake->inertia[0] = flake->inertia[1] / 2; /* thin, and the same about any line in its plane */
   cf_flake_settle_speed(flake, &s->air);
 }
 
@@ -173,6 +174,12 @@ static cf_status register_all(cf_snowfall *s, cf_registry *r) {
 }
 
 /* The path of the atlas, which is relative to the scene. */
+static cf_status measure_atlas(cf_snowfall *s) {
+  CF_TRY(CF_NEW(&s->shape, s->atlas->flakes.count));
+  for (int i = 0; i < s->atlas->flakes.count; ++i) CF_TRY(cf_atlas_measure(s->atlas, i, &s->shape[i]));
+  return CF_OK;
+}
+
 static cf_status read_atlas(cf_snowfall *s) {
   const char *name = s->keys->atlas;
   char *path;
@@ -200,6 +207,7 @@ static cf_status make(cf_snowfall *s, cf_registry *r) {
   for (int a = 0; a < 2; ++a) gust.period[a] = s->high[a] - s->low[a];
   cf_gust_create(&s->gust, &gust);
   CF_TRY(read_atlas(s));
+  CF_TRY(measure_atlas(s));
   CF_TRY(make_ground(s));
   CF_TRY(make_sets(s));
   CF_TRY(register_all(s, r));
@@ -213,6 +221,7 @@ void cf_snowfall_destroy(void *model) {
   cf_particles_destroy(s->settled);
   cf_particles_destroy(s->ground);
   cf_atlas_destroy(s->atlas);
+  cf_free(s->shape);
   cf_free(s->change);
   cf_free(s);
 }

@@ -29,6 +29,7 @@ typedef struct cf_snowfall {
   const cf_scene_snowfall *keys;
   const cf_grid *grid;
   cf_atlas *atlas;
+  cf_atlas_shape *shape; /* of its flakes */
   cf_air air;
   cf_gust gust;
   double low[3], high[3]; /* the box */

@@ -4,8 +4,10 @@
  * a stop changes a bit.
  */
 /* also in single precision */
+#include <math.h>
 #include <string.h>
 
+#include "io/image.h"
 #include "model/atlas.h"
 #include "scene_run.h"
 
@@ -20,6 +22,21 @@ static const char *const atlas_text =
     " \"metres_per_pixel\": 1e-4, \"center\": [31.5, 31.5], \"radius\": 1e-3, \"area\": 2e-6,\n"
     " \"mean_thickness\": 4e-5, \"height_scale\": 5e-5, \"mass\": 7e-8}]}\n";
 
+/* Both flakes are rings of ice between 10 and 20 pixels about the middle, and a dot at the right. */
+static void write_atlas(const char *folder) {
+  static uint8_t rgb[64][64][3];
+  char path[1200];
+  for (int j = 0; j < 64; ++j)
+    for (int i = 0; i < 64; ++i) {
+      const double r = hypot(i - 31.5, j - 31.5);
+      const bool ice = (r > 10 && r < 20) || (i == 62 && j == 10);
+      for (int c = 0; c < 3; ++c) rgb[j][i][c] = ice ? 200 : 0;
+    }
+  file_write(folder, "atlas.json", atlas_text);
+  snprintf(path, sizeof path, "%s/b.png", folder);
+  OK(cf_image_write(path, 64, 64, &rgb[0][0][0], 0, NULL));
+}
+
 static void open_snow(scene_run *r, const char *name, const char *more, const int threads) {
   char text[2048];
   snprintf(text, sizeof text,
@@ -29,7 +46,7 @@ static void open_snow(scene_run *r, const char *name, const char *more, const in
   const char *path = scene_path(name, text), *slash = strrchr(path, '/');
   char folder[1024];
   snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
-  file_write(folder, "atlas.json", atlas_text);
+  write_atlas(folder);
   OK(cf_scene_read(&r->scene, path, 0, NULL));
   OK(cf_sim_create(&r->sim, r->scene, threads));
 }
@@ -111,6 +128,29 @@ static void saved_and_loaded_it_goes_on_to_the_same_bits(void **state) {
   scene_close(&whole);
 }
 
+/* A ring of even thickness: inertia (r1^2 + r2^2)/2; the dot pulls the middle of the silhouette towards itself. */
+static void an_atlas_is_measured_from_its_pictures(void **state) {
+  (void)state;
+  const char *folder = folder_fresh("atlas_ring");
+  char path[1200];
+  cf_atlas *atlas;
+  cf_atlas_shape shape;
+  write_atlas(folder);
+  snprintf(path, sizeof path, "%s/atlas.json", folder);
+  OK(cf_atlas_read(&atlas, path));
+  OK(cf_atlas_measure(atlas, 0, &shape)); /* radius 2e-3 is 20 pixels, D 40 */
+  CLOSE(shape.inertia, (100 + 400) / 2.0 / 1600, 0.006);
+  assert_true(shape.offset[0] > 0 && shape.offset[1] > 0 && shape.offset[0] < 0.002);
+  snprintf(path, sizeof path, "%s/b.png", folder);
+  remove(path);
+  assert_int_equal(cf_atlas_measure(atlas, 0, &shape), CF_BAD_FILE);
+  uint8_t black[3 * 16] = {0};
+  OK(cf_image_write(path, 4, 4, black, 0, NULL));
+  assert_int_equal(cf_atlas_measure(atlas, 0, &shape), CF_BAD_FILE);
+  assert_non_null(strstr(cf_status_sentence(), "the atlas says 64 x 64"));
+  cf_atlas_destroy(atlas);
+}
+
 static void bad_scenes_say_what_is_wrong(void **state) {
   (void)state;
   static const char *const cases[][2] = {
@@ -152,6 +192,7 @@ int main(void) {
                                      cmocka_unit_test(as_many_land_as_fall),
                                      cmocka_unit_test(threads_do_not_change_a_bit),
                                      cmocka_unit_test(saved_and_loaded_it_goes_on_to_the_same_bits),
+                                     cmocka_unit_test(an_atlas_is_measured_from_its_pictures),
                                      cmocka_unit_test(bad_scenes_say_what_is_wrong),
                                      cmocka_unit_test(an_atlas_without_a_mass_is_told_with_its_place)};
   return cmocka_run_group_tests(tests, NULL, NULL);
