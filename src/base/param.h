@@ -55,6 +55,7 @@ typedef bool cf_param_flag;
 typedef int cf_param_word;       /* index among the words of the row */
 typedef unsigned cf_param_words; /* a set of words: bit i is word i */
 typedef const char *cf_param_text;
+typedef const char *cf_param_path;     /* of a file, from the root of the file system; "": none */
 typedef const char *cf_param_key;      /* not a key of the scene: the name of a record in its map */
 typedef cf_function cf_param_function; /* of x, y, z and t */
 typedef cf_function cf_param_profile;  /* of x, y and z */
@@ -93,6 +94,7 @@ typedef struct cf_param_constants { /* names for numbers, in the order given */
 #define CF_PARAM_TYPE_LIST(T)                                                           \
   T(number, "number") T(number_or_auto, "number or auto") T(integer, "whole number")    \
   T(flag, "true or false") T(word, "word") T(words, "list of words") T(text, "text")    \
+  T(path, "name of a file")                                                             \
   T(key, "name") T(texts, "list of texts") T(numbers, "list of numbers")                \
   T(numbers_or_auto, "list of numbers, or auto") T(integers, "list of whole numbers")   \
   T(function, "number or expression in x, y, z, t")                                     \

@@ -2,11 +2,13 @@
  *
  * Numbers, words, texts and lists of a scene; what has units or variables is in scene_quantity.c. See scene_value.h.
  */
+#define _GNU_SOURCE /* realpath */
 #include "io/scene_value.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/real.h"
@@ -173,6 +175,19 @@ static cf_status read_text(cf_reader *reader, const cf_param *param, const cf_no
   return cf_config_copy(reader->config, text, node->text, strlen(node->text));
 }
 
+/* A name is relative to the scene's folder; what is kept holds wherever the resolved scene is put. */
+static cf_status read_path(cf_reader *reader, const cf_param *param, const cf_node *node, const char **path) {
+  CF_TRY(cf_value_expect_scalar(reader, param, node));
+  if (node->text[0] == '/' || node->text[0] == '\0') return read_text(reader, param, node, path);
+  char *folder = realpath(reader->config->folder, NULL);
+  if (folder == NULL)
+    return cf_reader_fail(reader, node, "%s: the folder %.200s cannot be found", reader->path,
+                          reader->config->folder);
+  const cf_status status = cf_config_text(reader->config, path, "%s/%s", folder, node->text);
+  free(folder);
+  return status;
+}
+
 static cf_status read_texts(cf_reader *reader, const cf_param *param, const cf_node *node,
                             cf_param_texts *texts) {
   const bool single = node->kind == CF_NODE_SCALAR;
@@ -205,6 +220,8 @@ cf_status cf_value_read(cf_reader *reader, const cf_param *param, const cf_node 
       return read_words(reader, param, node, member);
     case CF_PARAM_text:
       return read_text(reader, param, node, member);
+    case CF_PARAM_path:
+      return read_path(reader, param, node, member);
     case CF_PARAM_texts:
       return read_texts(reader, param, node, member);
     case CF_PARAM_numbers_or_auto:

@@ -164,6 +164,7 @@ static void add_value(cf_writing *out, const cf_param *param, const void *member
       add_words(out, param->range, *(const unsigned *)member);
       break;
     case CF_PARAM_text:
+    case CF_PARAM_path:
       add_text(out, *(const char *const *)member);
       break;
     case CF_PARAM_texts:

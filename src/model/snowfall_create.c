@@ -3,8 +3,6 @@
  * Making a snowfall: flakes of the atlas in the air, and the columns that they land on.
  */
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "base/rng.h"
@@ -173,23 +171,11 @@ static cf_status register_all(cf_snowfall *s, cf_registry *r) {
   return cf_registry_add_numbers(r, "landed", "", &s->landed, 1);
 }
 
-/* The path of the atlas, which is relative to the scene. */
-static cf_status measure_atlas(cf_snowfall *s) {
+static cf_status read_atlas(cf_snowfall *s) {
+  CF_TRY(cf_atlas_read(&s->atlas, s->keys->atlas));
   CF_TRY(CF_NEW(&s->shape, s->atlas->flakes.count));
   for (int i = 0; i < s->atlas->flakes.count; ++i) CF_TRY(cf_atlas_measure(s->atlas, i, &s->shape[i]));
   return CF_OK;
-}
-
-static cf_status read_atlas(cf_snowfall *s) {
-  const char *name = s->keys->atlas;
-  char *path;
-  const size_t size = strlen(cf_scene_folder(s->scene)) + strlen(name) + 2;
-  CF_TRY(cf_new_array((void **)&path, size, 1));
-  snprintf(path, size, "%s%s%s", name[0] == '/' ? "" : cf_scene_folder(s->scene), name[0] == '/' ? "" : "/",
-           name);
-  const cf_status status = cf_atlas_read(&s->atlas, path);
-  cf_free(path);
-  return status;
 }
 
 static cf_status make(cf_snowfall *s, cf_registry *r) {
@@ -207,7 +193,6 @@ static cf_status make(cf_snowfall *s, cf_registry *r) {
   for (int a = 0; a < 2; ++a) gust.period[a] = s->high[a] - s->low[a];
   cf_gust_create(&s->gust, &gust);
   CF_TRY(read_atlas(s));
-  CF_TRY(measure_atlas(s));
   CF_TRY(make_ground(s));
   CF_TRY(make_sets(s));
   CF_TRY(register_all(s, r));

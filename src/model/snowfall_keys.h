@@ -8,7 +8,7 @@
 #include "base/param.h"
 
 #define CF_SNOWFALL_TABLE(P, R)                                                                              \
-  P(atlas, text, CF_NONE, "", "",                                                                            \
+  P(atlas, path, CF_NONE, "", "",                                                                            \
     "The atlas of flakes, an atlas.json that a run of model phase has written; relative to the scene")       \
   P(flakes, integer, "5000", "", "[1, 10000000]",                                                            \
     "How many are in the air; for each that lands another comes in at the top")                              \

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "io/image.h"
 #include "model/atlas.h"
 #include "scene_run.h"
@@ -71,6 +72,22 @@ static void all_snow_is_accounted_for(void **state) {
   const cf_particles *f = set_of(&r, "flakes");
   for (int64_t i = 0; i < f->count; ++i)
     for (int a = 0; a < 2; ++a) assert_true(f->attribute[0].at[a][i] >= 0 && f->attribute[0].at[a][i] <= 1);
+  scene_close(&r);
+}
+
+/* The resolved scene is put elsewhere, and still finds it. */
+static void the_atlas_is_beside_the_scene_wherever_that_is_written_to(void **state) {
+  (void)state;
+  scene_run r;
+  cf_scene *again;
+  char *text;
+  open_snow(&r, "snow_path", gusty, 1);
+  assert_true(r.scene->snowfall.atlas[0] == '/');
+  OK(cf_scene_write(r.scene, &text));
+  OK(cf_scene_read(&again, scene_path("snow_elsewhere", text), 0, NULL));
+  assert_string_equal(again->snowfall.atlas, r.scene->snowfall.atlas);
+  cf_free(text);
+  cf_scene_destroy(again);
   scene_close(&r);
 }
 
@@ -188,12 +205,14 @@ static void an_atlas_without_a_mass_is_told_with_its_place(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(all_snow_is_accounted_for),
-                                     cmocka_unit_test(as_many_land_as_fall),
-                                     cmocka_unit_test(threads_do_not_change_a_bit),
-                                     cmocka_unit_test(saved_and_loaded_it_goes_on_to_the_same_bits),
-                                     cmocka_unit_test(an_atlas_is_measured_from_its_pictures),
-                                     cmocka_unit_test(bad_scenes_say_what_is_wrong),
-                                     cmocka_unit_test(an_atlas_without_a_mass_is_told_with_its_place)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(all_snow_is_accounted_for),
+      cmocka_unit_test(the_atlas_is_beside_the_scene_wherever_that_is_written_to),
+      cmocka_unit_test(as_many_land_as_fall),
+      cmocka_unit_test(threads_do_not_change_a_bit),
+      cmocka_unit_test(saved_and_loaded_it_goes_on_to_the_same_bits),
+      cmocka_unit_test(an_atlas_is_measured_from_its_pictures),
+      cmocka_unit_test(bad_scenes_say_what_is_wrong),
+      cmocka_unit_test(an_atlas_without_a_mass_is_told_with_its_place)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
