@@ -10,16 +10,19 @@
  * (p is pressure over density; density differs from place to place in a alone, Boussinesq.) One step:
  *
  *     v = u + dt/2 (u - u_before)/dt_before                the velocity in the middle of the step
- *     half a move of scalars and u with v
- *     u <- u + dt (a - grad p + nu div grad u)             p of the step before; a from phi before and after diffusion
- *     scalars diffuse over dt, between the two halves of a
- *     half a move of scalars and u with v
+ *     u <- u + dt/2 (a - grad p)                           p of the step before
+ *     scalars: half a move with v, diffusion over dt, half a move
+ *     u moves with v
+ *     u <- u + dt/2 (a - grad p)                           a from the new scalars
  *     u <- u - dt grad p',  p <- p + p',  div u = 0        the change of the pressure
  *
  * Second order in time as a whole: v is centred and free of divergence because both velocities behind it are, moves
  * and accelerations alternate as Strang's, and what the old pressure misses is a gradient, which the projection puts
  * right. One projection a step does for that. What moves is moved in the form of a divergence: momentum changes by forces
  * and walls alone.
+ *
+ * With viscosity the velocity moves in two halves around its friction, which takes all accelerations into its stages
+ * (viscosity.h says why), half of them from the scalars before their diffusion and half after.
  *
  * It does not do: free surfaces, changes of volume, densities that differ much.
  */
@@ -55,14 +58,25 @@ static cf_status find_middle(cf_flow *m, const double dt) {
 
 /* --- moves ------------------------------------------------------------------------------------------------ */
 
-static cf_status move(cf_flow *m, const double t, const double dt) {
-  bool begun[CF_ADVECT_SCHEMES] = {false};
-  CF_TRY(cf_scalars_move(&m->scalars, false, t, dt, begun));
+static cf_status move_velocity(cf_flow *m, const double t, const double dt, bool begun[CF_ADVECT_SCHEMES]) {
   cf_advect *a = m->scalars.by_scheme[m->scheme];
   if (!begun[m->scheme]) CF_TRY(cf_advect_begin(a, t, dt));
+  begun[m->scheme] = true;
   cf_advect_velocity(a, &m->walls, m->u);
   cf_flow_walls_hold(&m->walls, m->u);
   return CF_OK;
+}
+
+/* Half a step of the scalars, and of the velocity where its friction comes between. */
+static cf_status move_half(cf_flow *m, const double t, const double dt) {
+  bool begun[CF_ADVECT_SCHEMES] = {false};
+  CF_TRY(cf_scalars_move(&m->scalars, false, t, dt / 2, begun));
+  return m->viscosity != NULL ? move_velocity(m, t, dt / 2, begun) : CF_OK;
+}
+
+static cf_status move_whole(cf_flow *m, const double t, const double dt) {
+  bool begun[CF_ADVECT_SCHEMES] = {false};
+  return m->viscosity == NULL ? move_velocity(m, t, dt, begun) : CF_OK;
 }
 
 static cf_status move_paper(cf_flow *m, const double t, const double dt) {
@@ -95,11 +109,10 @@ static void clear_faces(const cf_flow *m, const cf_face f) {
     }
 }
 
-/* to += dt (a - grad p) with the scalars as they are; `whole`: what does not hang on them as well. */
-static cf_status accelerate(cf_flow *m, const double t, const double dt, const bool whole, const cf_face to) {
+/* to += dt (a - grad p), a with the scalars as they are and the given force at time t. */
+static cf_status accelerate(cf_flow *m, const double t, const double dt, const cf_face to) {
   for (int i = 0; m->force != NULL && i < m->scalars.count; ++i)
-    if (m->lift[i] != 0) cf_force_lift(m->force, dt / 2, m->lift[i], m->scalars.item[i].phi, to);
-  if (!whole) return CF_OK;
+    if (m->lift[i] != 0) cf_force_lift(m->force, dt, m->lift[i], m->scalars.item[i].phi, to);
   if (m->given_in_time)
     for (int a = 0; a < m->grid->box.dim; ++a)
       CF_TRY(cf_grid_sample(m->grid, &m->scene->flow.force.axis[a].fn, a, t, m->given.at[a]));
@@ -109,29 +122,23 @@ static cf_status accelerate(cf_flow *m, const double t, const double dt, const b
   return CF_OK;
 }
 
-/* --- a step ----------------------------------------------------------------------------------------------- */
-
-/* The middle part: everything but motion. */
-static cf_status act(cf_flow *m, const double t, const double dt, double *clock, cf_step_report *report) {
-  const bool sticky = m->viscosity != NULL;
-  const cf_face to = sticky ? m->push : m->u;
-  const double weight =
-      sticky ? 1 : dt; /* viscosity takes accelerations, and the length of the step itself */
-  cf_solve_report solve;
-  if (sticky) clear_faces(m, m->push);
-  CF_TRY(accelerate(m, t + dt / 2, weight, true, to));
-  *clock = cf_stage_end(report, CF_STAGE_FORCE, *clock);
-  CF_TRY(cf_scalars_diffuse(&m->scalars, t, dt, report));
-  *clock = cf_stage_end(report, CF_STAGE_DIFFUSE, *clock);
-  CF_TRY(accelerate(m, t + dt / 2, weight, false, to));
-  if (sticky) {
-    CF_TRY(cf_viscosity_step(m->viscosity, dt, m->push, m->u, &solve));
-    cf_step_report_add(report, CF_STAGE_FORCE, &solve);
-  }
+/* Half of what acts in a step: on u itself, or into what friction will take. */
+static cf_status push_half(cf_flow *m, const double t, const double dt) {
+  if (m->viscosity != NULL) return accelerate(m, t, 0.5, m->push);
+  CF_TRY(accelerate(m, t, dt / 2, m->u));
   cf_flow_walls_hold(&m->walls, m->u);
-  *clock = cf_stage_end(report, CF_STAGE_FORCE, *clock);
   return CF_OK;
 }
+
+static cf_status rub(cf_flow *m, const double dt, cf_step_report *report) {
+  cf_solve_report solve;
+  CF_TRY(cf_viscosity_step(m->viscosity, dt, m->push, m->u, &solve));
+  cf_step_report_add(report, CF_STAGE_FORCE, &solve);
+  clear_faces(m, m->push);
+  return CF_OK;
+}
+
+/* --- a step ----------------------------------------------------------------------------------------------- */
 
 static cf_status project(cf_flow *m, const double dt, cf_step_report *report) {
   cf_solve_report solve;
@@ -142,15 +149,28 @@ static cf_status project(cf_flow *m, const double dt, cf_step_report *report) {
 
 static cf_status flow_step(void *model, const double t, const double dt, cf_step_report *report) {
   cf_flow *m = model;
+  const bool sticky = m->viscosity != NULL;
   double clock = cf_stage_clock();
   CF_TRY(find_middle(m, dt));
+  clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
+  if (!sticky) CF_TRY(push_half(m, t, dt));
+  clock = cf_stage_end(report, CF_STAGE_FORCE, clock);
   CF_TRY(move_paper(m, t, dt));
-  CF_TRY(move(m, t, dt / 2));
+  CF_TRY(move_half(m, t, dt));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
   if (m->walls_in_time) CF_TRY(cf_flow_walls_at(m, t + dt));
-  CF_TRY(act(m, t, dt, &clock, report));
-  CF_TRY(move(m, t + dt / 2, dt / 2));
+  if (sticky) CF_TRY(push_half(m, t + dt / 2, dt));
+  clock = cf_stage_end(report, CF_STAGE_FORCE, clock);
+  CF_TRY(cf_scalars_diffuse(&m->scalars, t, dt, report));
+  clock = cf_stage_end(report, CF_STAGE_DIFFUSE, clock);
+  if (sticky) CF_TRY(push_half(m, t + dt / 2, dt));
+  if (sticky) CF_TRY(rub(m, dt, report));
+  clock = cf_stage_end(report, CF_STAGE_FORCE, clock);
+  CF_TRY(move_half(m, t + dt / 2, dt));
+  CF_TRY(move_whole(m, t, dt));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
+  if (!sticky) CF_TRY(push_half(m, t + dt, dt));
+  clock = cf_stage_end(report, CF_STAGE_FORCE, clock);
   CF_TRY(project(m, dt, report));
   cf_stage_end(report, CF_STAGE_PROJECT, clock);
   return CF_OK;
