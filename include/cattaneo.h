@@ -200,6 +200,28 @@ cf_status cf_sim_field(cf_sim *sim, const char *name, int component, cf_view *vi
 /* The names of the fields: 0, 1, ... until NULL. */
 const char *cf_sim_field_name(const cf_sim *sim, int i);
 
+/* --- particles ----------------------------------------------------------------------------------------- */
+
+/* An attribute of a set of particles: component c of particle i, 0 <= i < count, is at[c][i]. Every component is an
+ * array of its own; memory beyond `count` is not yours. */
+typedef struct cf_particle_view {
+  int64_t count;
+  const int64_t
+      *id;        /* id[i] stays with particle i for life and is never used again; its place i may change */
+  int components; /* 1 to 9 */
+  cf_real *at[9];
+  const char *unit; /* "" where the scene gives none */
+} cf_particle_view;
+
+/* The attribute `attribute` ("position", ...) of the particles `set`. The view is valid until the next step, or load.
+ * Values may be written between steps. CF_BAD_ARGUMENT: there is no such set or attribute; the sentence lists those
+ * there are. */
+cf_status cf_sim_particles(cf_sim *sim, const char *set, const char *attribute, cf_particle_view *view);
+
+/* The names of the sets, and of the attributes of a set: 0, 1, ... until NULL. */
+const char *cf_sim_particles_name(const cf_sim *sim, int i);
+const char *cf_sim_particles_attribute(const cf_sim *sim, const char *set, int i);
+
 /* --- numbers ------------------------------------------------------------------------------------------- */
 
 #define CF_NAME_MAX    64
@@ -626,6 +648,7 @@ double cf_helmholtz_residual(cf_helmholtz *A, cf_cell x, cf_cell b);
   F(scene_read) F(scene_destroy) F(scene_explain)                                                       \
   F(sim_create) F(sim_destroy) F(sim_step) F(sim_run)                                                   \
   F(sim_time) F(sim_end) F(sim_step_count) F(sim_finished) F(sim_frames) F(sim_frame_time)              \
+  F(sim_particles) F(sim_particles_name) F(sim_particles_attribute)                                     \
   F(sim_warning) F(sim_field) F(sim_field_name) F(sim_metric_names) F(sim_metrics)                      \
   F(sim_save) F(sim_load)                                                                               \
   F(box_init) F(grid_init) F(cell_create) F(cell_destroy) F(face_create) F(face_destroy)                \

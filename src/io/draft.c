@@ -72,18 +72,33 @@ cf_status cf_draft_keep(const cf_draft *d) {
   return sync_path(folder.text, O_DIRECTORY);
 }
 
-cf_status cf_file_write(const char *path, const void *bytes, const size_t size) {
+cf_status cf_file_fill(const char *path, bool (*fill)(FILE *file, const void *what), const void *what) {
   cf_draft draft;
   CF_TRY(cf_draft_begin(&draft, path));
   FILE *file = fopen(draft.temporary.text, "wbe");
   if (file == NULL) return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", path, strerror(errno));
-  const bool written = fwrite(bytes, 1, size, file) == size && fflush(file) == 0;
+  errno = 0;
+  const bool written = fill(file, what) && fflush(file) == 0 && !ferror(file);
   const int reason = errno;
   if (fclose(file) != 0 || !written) {
     cf_draft_drop(&draft);
     return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", path, strerror(written ? errno : reason));
   }
   return cf_draft_keep(&draft);
+}
+
+typedef struct block {
+  const void *bytes;
+  size_t size;
+} block;
+
+static bool fill_block(FILE *file, const void *what) {
+  const block *b = what;
+  return fwrite(b->bytes, 1, b->size, file) == b->size;
+}
+
+cf_status cf_file_write(const char *path, const void *bytes, const size_t size) {
+  return cf_file_fill(path, fill_block, &(block){bytes, size});
 }
 
 /* Reads what the open file has; its size was asked before, but it may be growing. */

@@ -44,6 +44,10 @@ cf_status cf_draft_keep(const cf_draft *d);
 /* Removes the temporary file, if there is one. */
 void cf_draft_drop(const cf_draft *d);
 
+/* A file that `fill` writes, whole or not at all; false, or any failure of the stream, gives it up. CF_CANNOT_WRITE
+ * with path and reason. */
+cf_status cf_file_fill(const char *path, bool (*fill)(FILE *file, const void *what), const void *what);
+
 /* A small file, whole or not at all. CF_CANNOT_WRITE. */
 cf_status cf_file_write(const char *path, const void *bytes, size_t size);
 

@@ -85,7 +85,7 @@ static cf_status write_entry(cf_hdf5 *h, const cf_frame_job *j, const cf_entry *
 }
 
 static bool is_field(const cf_frame_job *j, const cf_entry *e) {
-  return e->kind != CF_KIND_PARTICLES && cf_choice_has(&j->choice, e);
+  return e->kind != CF_KIND_PARTICLES && cf_choice_has(&j->plan->choice, e);
 }
 
 /* --- fields_000012.vtkhdf --------------------------------------------------------------------------------
@@ -126,14 +126,14 @@ static cf_status check_names(const cf_registry *r) {
 
 cf_status cf_frame_write(const char *folder, const int64_t frame, const cf_registry *r,
                          const cf_frame_plan *plan, const cf_stamp *stamp) {
-  const cf_frame_job j = {r, plan, stamp, {plan->count, plan->names}, frame};
+  const cf_frame_job j = {r, plan, stamp, frame};
   bool fields = false;
   CF_TRY(check_names(r));
-  CF_TRY(cf_choice_check(&j.choice, r));
+  CF_TRY(cf_choice_check(&plan->choice, r));
   for (int e = 0; e < r->count; ++e) fields = fields || is_field(&j, &r->entry[e]);
   if (fields) CF_TRY(cf_frame_file(folder, &j, "fields", fill_fields, NULL));
   for (int e = 0; e < r->count; ++e)
-    if (r->entry[e].kind == CF_KIND_PARTICLES && cf_choice_has(&j.choice, &r->entry[e]))
+    if (r->entry[e].kind == CF_KIND_PARTICLES && cf_choice_has(&plan->choice, &r->entry[e]))
       CF_TRY(cf_frame_particles(folder, &j, &r->entry[e]));
   return CF_OK;
 }

@@ -17,6 +17,7 @@
 #ifndef CF_IO_FRAME_H
 #define CF_IO_FRAME_H
 
+#include "grid/mesh.h"
 #include "io/folder.h"
 #include "io/parts.h"
 #include "io/stamp.h"
@@ -24,15 +25,19 @@
 #define CF_FRAME_FIELDS 64
 
 typedef struct cf_frame_plan {
-  int count;                /* of names */
-  const char *const *names; /* as in cf_choice (io/parts.h); NULL: everything */
-  int compression;          /* 0 (none) to 9 */
+  cf_choice choice;
+  int compression; /* 0 (none) to 9 */
 } cf_frame_plan;
 
 /* Writes the files of frame number `frame` and lists its time in the series. CF_BAD_ARGUMENT: a name that the
  * registry does not have. CF_CANNOT_WRITE with path and reason; earlier frames are not touched. */
 cf_status cf_frame_write(const char *folder, int64_t frame, const cf_registry *r, const cf_frame_plan *plan,
                          const cf_stamp *stamp);
+
+/* Writes mesh_<frame>.vtkhdf (PolyData: triangles, `Normals` and the attributes under PointData) and lists its time in
+ * mesh.vtkhdf.series. `g` says the dimension. CF_CANNOT_WRITE. */
+cf_status cf_frame_write_mesh(const char *folder, int64_t frame, const cf_grid *g, const cf_mesh *mesh,
+                              const cf_stamp *stamp);
 
 /* Removes all frames numbered above `last` (files of every format) and their lines in the series. */
 cf_status cf_frame_cut(const char *folder, int64_t last);

@@ -12,7 +12,6 @@ typedef struct cf_frame_job {
   const cf_registry *r;
   const cf_frame_plan *plan;
   const cf_stamp *stamp;
-  cf_choice choice;
   int64_t frame;
 } cf_frame_job;
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Particles of a frame as VTKHDF PolyData: points, one cell that holds them all, and the attributes.
+ * Particles and the surface of a frame as VTKHDF PolyData: points, one cell that holds them all or triangles, and the
+ * attributes.
  *
  * Readers want all four groups of cells to be there, empty ones with the one offset 0.
  */
@@ -64,7 +65,7 @@ static cf_status fill_particles(cf_hdf5 *h, const cf_frame_job *j, const void *w
   for (int i = 0; cf_part_of(j->r, e, i, &part); ++i) {
     if (i == CF_PART_NEXT_ID) continue;
     const bool places = part.attribute == CF_PARTICLE_POSITION;
-    if (!places && !cf_choice_has_part(&j->choice, &part)) continue;
+    if (!places && !cf_choice_has_part(&j->plan->choice, &part)) continue;
     pad(&part);
     CF_TRY(cf_path_make(&path, "/VTKHDF/%s%s", places ? "Points" : "PointData/",
                         places ? "" : cf_part_own(&part)));
@@ -77,4 +78,37 @@ cf_status cf_frame_particles(const char *folder, const cf_frame_job *j, const cf
   char word[2 * CF_NAME_MAX];
   cf_particles_word(j->r, e->particles, word, sizeof word);
   return cf_frame_file(folder, j, word, fill_particles, e);
+}
+
+/* --- a surface -------------------------------------------------------------------------------------------- */
+
+static cf_status write_reals(cf_hdf5 *h, const char *name, const int64_t count, const int components,
+                             const void *values, const char *unit) {
+  const cf_array a = {CF_ELEMENT_REAL, components > 1 ? 2 : 1, {count, components}};
+  cf_path path;
+  CF_TRY(cf_path_make(&path, "/VTKHDF/%s", name));
+  CF_TRY(cf_hdf5_write(h, path.text, &a, values, NULL));
+  return cf_hdf5_set_text(h, path.text, "unit", unit);
+}
+
+static cf_status fill_mesh(cf_hdf5 *h, const cf_frame_job *j, const void *what) {
+  const cf_mesh *m = what;
+  CF_TRY(cf_frame_root(h, j, "PolyData"));
+  CF_TRY(write_points(h, m->vertices, m->triangles, (const int32_t *)m->corner));
+  CF_TRY(write_reals(h, "Points", m->vertices, 3, m->place, "m"));
+  if (m->normal != NULL) CF_TRY(write_reals(h, "PointData/Normals", m->vertices, 3, m->normal, ""));
+  for (int i = 0; i < m->attributes; ++i) {
+    cf_path name;
+    CF_TRY(cf_path_make(&name, "PointData/%s", m->attribute[i].name));
+    CF_TRY(write_reals(h, name.text, m->vertices, 1, m->attribute[i].at, m->attribute[i].unit));
+  }
+  return CF_OK;
+}
+
+cf_status cf_frame_write_mesh(const char *folder, const int64_t frame, const cf_grid *g, const cf_mesh *mesh,
+                              const cf_stamp *stamp) {
+  const cf_registry r = {.grid = g};
+  const cf_frame_plan plan = {0};
+  return cf_frame_file(folder, &(cf_frame_job){.r = &r, .plan = &plan, .stamp = stamp, .frame = frame},
+                       "mesh", fill_mesh, mesh);
 }

@@ -2,7 +2,6 @@
 #define _GNU_SOURCE
 #include "io/npy.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -29,6 +28,11 @@ static bool write_head(FILE *file, const cf_array *a) {
   return fwrite(magic, 1, 10, file) == 10 && fprintf(file, "%-*s\n", padded - 1, text) == padded;
 }
 
+typedef struct job {
+  const cf_part *part;
+  cf_real *buffer; /* of a piece */
+} job;
+
 static bool write_slabs(FILE *file, const cf_slabs *s, cf_real *buffer) {
   cf_slab piece;
   for (int64_t i = 0; cf_slabs_piece(s, i, &piece); ++i) {
@@ -39,33 +43,20 @@ static bool write_slabs(FILE *file, const cf_slabs *s, cf_real *buffer) {
   return true;
 }
 
-static bool write_values(FILE *file, const cf_part *p, cf_real *buffer) {
-  if (p->streamed) return write_slabs(file, &p->slabs, buffer);
+static bool fill(FILE *file, const void *what) {
+  const job *j = what;
+  const cf_part *p = j->part;
   const size_t bytes = (size_t)cf_array_bytes(&p->array);
+  if (!write_head(file, &p->array)) return false;
+  if (p->streamed) return write_slabs(file, &p->slabs, j->buffer);
   return bytes == 0 || fwrite(p->values, 1, bytes, file) == bytes;
 }
 
-static cf_status write_file(const cf_draft *draft, const cf_part *p, cf_real *buffer) {
-  FILE *file = fopen(draft->temporary.text, "wbe");
-  if (file == NULL)
-    return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", draft->path.text, strerror(errno));
-  const bool good = write_head(file, &p->array) && write_values(file, p, buffer) && fflush(file) == 0;
-  const int reason = errno;
-  if (fclose(file) != 0 || !good) {
-    cf_draft_drop(draft);
-    return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", draft->path.text,
-                   strerror(good ? errno : reason));
-  }
-  return cf_draft_keep(draft);
-}
-
 static cf_status write_array(const cf_path *path, const cf_part *p) {
-  cf_draft draft;
-  cf_real *buffer = NULL;
-  CF_TRY(cf_draft_begin(&draft, path->text));
-  if (p->streamed) CF_TRY(CF_NEW(&buffer, cf_slabs_room(&p->slabs)));
-  const cf_status s = write_file(&draft, p, buffer);
-  cf_free(buffer);
+  job j = {.part = p};
+  if (p->streamed) CF_TRY(CF_NEW(&j.buffer, cf_slabs_room(&p->slabs)));
+  const cf_status s = cf_file_fill(path->text, fill, &j);
+  cf_free(j.buffer);
   return s;
 }
 
@@ -85,16 +76,15 @@ static cf_status write_part(const char *folder, const int64_t frame, const cf_re
   return write_array(&path, p);
 }
 
-cf_status cf_npy_write(const char *folder, const int64_t frame, const cf_registry *r, const int count,
-                       const char *const *names) {
-  const cf_choice choice = {count, names};
-  CF_TRY(cf_choice_check(&choice, r));
+cf_status cf_npy_write(const char *folder, const int64_t frame, const cf_registry *r,
+                       const cf_choice *choice) {
+  CF_TRY(cf_choice_check(choice, r));
   for (int e = 0; e < r->count; ++e) {
     const cf_entry *entry = &r->entry[e];
     cf_part part;
     if (entry->kind == CF_KIND_NUMBER || entry->kind == CF_KIND_COUNTER) continue;
     for (int i = 0; cf_part_of(r, entry, i, &part); ++i)
-      if (cf_choice_has_part(&choice, &part) && !(entry->kind == CF_KIND_PARTICLES && i == CF_PART_NEXT_ID))
+      if (cf_choice_has_part(choice, &part) && !(entry->kind == CF_KIND_PARTICLES && i == CF_PART_NEXT_ID))
         CF_TRY(write_part(folder, frame, r, &part));
   }
   return CF_OK;

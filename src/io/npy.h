@@ -13,9 +13,7 @@
 
 #include "io/parts.h"
 
-/* Writes what those names choose (io/parts.h; numbers and counters are passed over). CF_BAD_ARGUMENT: no such entry;
- * CF_CANNOT_WRITE. */
-cf_status cf_npy_write(const char *folder, int64_t frame, const cf_registry *r, int count,
-                       const char *const *names);
+/* Writes what is chosen (numbers and counters are passed over). CF_BAD_ARGUMENT: no such entry; CF_CANNOT_WRITE. */
+cf_status cf_npy_write(const char *folder, int64_t frame, const cf_registry *r, const cf_choice *choice);
 
 #endif

@@ -110,6 +110,7 @@ void cf_choice_list(const cf_registry *r, char *text, const size_t size) {
   text[0] = '\0';
   for (int e = 0; e < r->count && used < size; ++e) {
     const cf_entry *entry = &r->entry[e];
+    if (entry->kind == CF_KIND_NUMBER || entry->kind == CF_KIND_COUNTER) continue;
     used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", entry->name);
     if (entry->kind != CF_KIND_PARTICLES) continue;
     for (int a = 0; a < entry->particles->attributes && used < size; ++a)
@@ -125,7 +126,7 @@ cf_status cf_choice_check(const cf_choice *c, const cf_registry *r) {
     for (int e = 0; e < r->count; ++e) known = known || names_entry(c->names[i], &r->entry[e]);
     if (known) continue;
     cf_choice_list(r, list, sizeof list);
-    return cf_fail(CF_BAD_ARGUMENT, "there is no field \"%s\" to write; there are: %s", c->names[i], list);
+    return cf_fail(CF_BAD_ARGUMENT, "there is no field \"%s\"; there are %s", c->names[i], list);
   }
   return CF_OK;
 }

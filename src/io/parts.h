@@ -52,7 +52,7 @@ bool cf_choice_has_part(const cf_choice *c, const cf_part *p);
 /* CF_BAD_ARGUMENT: a name that the registry does not have; the sentence lists those there are. */
 cf_status cf_choice_check(const cf_choice *c, const cf_registry *r);
 
-/* "phi, q, gel, gel.position": what could be chosen. */
+/* "phi, q, gel, gel.position": what could be chosen, besides numbers and counters. */
 void cf_choice_list(const cf_registry *r, char *text, size_t size);
 
 /* The word in the names of a set's files: particles_000012.vtkhdf for the first set of a run, particles_SET for others. */

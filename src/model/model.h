@@ -108,6 +108,10 @@ typedef struct cf_model {
   bool (*derived)(const void *model, int i, cf_derived *field);
   cf_status (*derive)(void *model, int i, cf_cell out);
 
+  /* Fills what is derived and written besides fields: derived attributes of particles. Called before a frame is
+   * written. NULL: there is nothing. */
+  cf_status (*show)(void *model);
+
   /* The surface that a frame shows, in a mesh the caller made and will destroy. NULL: there is none. */
   cf_status (*mesh)(void *model, struct cf_mesh *mesh);
 

@@ -40,6 +40,9 @@ CF_PARAM_TABLE(cf_scene_checkpoint, CF_CHECKPOINT_TABLE)
 #define CF_PARAM_STRUCT cf_scene_preview
 CF_PARAM_TABLE(cf_scene_preview, CF_PREVIEW_TABLE)
 #undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_vdb
+CF_PARAM_TABLE(cf_scene_vdb, CF_VDB_TABLE)
+#undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene_output
 CF_PARAM_TABLE(cf_scene_output, CF_OUTPUT_TABLE)
 #undef CF_PARAM_STRUCT

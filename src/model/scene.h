@@ -37,7 +37,7 @@
 #define CF_ADVECTION_WORDS(W) W(PPM, ppm) W(LINEAR, linear) W(WENO5, weno5) W(CUBIC, cubic)
 #define CF_SHAPE_WORDS(W)     W(BOX, box) W(SPHERE, sphere) W(EVERYWHERE, everywhere)
 #define CF_STALL_WORDS(W)     W(WARN, warn) W(STOP, stop)
-#define CF_FORMAT_WORDS(W)    W(VTKHDF, vtkhdf) W(PNG, png) W(NPY, npy)
+#define CF_FORMAT_WORDS(W)    W(VTKHDF, vtkhdf) W(PNG, png) W(NPY, npy) W(VDB, vdb) W(PLY, ply)
 
 #define CF_SCENE_ENUM(upper, lower) CF_SCENE_ENUM_PREFIX(upper),
 enum {
@@ -206,11 +206,20 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(size, integers, CF_NONE, "", "2 of [16, 16384]",                                                    \
     "Width and height in pixels; left out: what suits the box")
 
+#define CF_VDB_TABLE(P, R)                                                    \
+  P(half, word, "off", "", CF_WORDS(CF_SWITCH_WORDS),                         \
+    "Values of 16 bits instead of 32: half the size, three digits: on | off") \
+  P(prune, number, "1e-6", "", "[0, 1)",                                      \
+    "Voxels below this part of a field's largest value are left out; 0: those that are 0")
+
 #define CF_OUTPUT_TABLE(P, R)                                                        \
   P(fields, texts, CF_NONE, "", "",                                                  \
     "The fields that are written; left out: the scalars and the fluxes in `fields`") \
   P(formats, words, "[vtkhdf, png]", "", CF_WORDS(CF_FORMAT_WORDS),                  \
-    "What a frame is written as: vtkhdf (ParaView), png (a picture), npy (NumPy)")   \
+    "What a frame is written as: vtkhdf (ParaView), png (a picture), npy (NumPy), "  \
+    "vdb (volumes for Blender and others), ply (the surface, of models that have "   \
+    "one)")                                                                          \
+  R(record, vdb, cf_scene_vdb, "The volumes")                                        \
   R(record, checkpoint, cf_scene_checkpoint, "Saved states to resume from")          \
   R(record, preview, cf_scene_preview, "The pictures")
 
@@ -266,6 +275,9 @@ typedef struct cf_scene_checkpoint {
 typedef struct cf_scene_preview {
   CF_PARAM_MEMBERS(CF_PREVIEW_TABLE)
 } cf_scene_preview;
+typedef struct cf_scene_vdb {
+  CF_PARAM_MEMBERS(CF_VDB_TABLE)
+} cf_scene_vdb;
 typedef struct cf_scene_output {
   CF_PARAM_MEMBERS(CF_OUTPUT_TABLE)
 } cf_scene_output;

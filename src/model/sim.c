@@ -50,7 +50,7 @@ cf_status cf_sim_show(cf_sim *sim) {
     const cf_entry *e = cf_registry_find(&sim->shown, field.name);
     if (e != NULL) CF_TRY(sim->model->derive(sim->state, i, e->cell));
   }
-  return CF_OK;
+  return sim->model->show != NULL ? sim->model->show(sim->state) : CF_OK;
 }
 
 static void destroy_shown(cf_sim *sim) {

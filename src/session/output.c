@@ -8,52 +8,80 @@
 #include "io/folder.h"
 #include "io/frame.h"
 #include "io/image.h"
+#include "io/mesh.h"
 #include "io/npy.h"
+#include "io/vdb.h"
 #include "render/colormap.h"
 #include "render/preview.h"
 #include "session/overlay.h"
+
+static bool has_format(const cf_sim *sim, const int format) {
+  return sim->scene->output.formats >> format & 1;
+}
+
+static bool is_drawable(const cf_entry *e) { return e->kind == CF_KIND_CELL || e->kind == CF_KIND_FACE; }
 
 static const cf_entry *shown_field(const cf_sim *sim) {
   return cf_registry_find(&sim->shown, sim->scene->output.preview.field);
 }
 
-/* "phi, q, velocity": what could have been meant. */
-static void list_fields(const cf_sim *sim, char *text, const size_t size) {
+/* "phi, q, velocity": what could be drawn. */
+static void list_drawable(const cf_sim *sim, char *text, const size_t size) {
   size_t used = 0;
   text[0] = '\0';
-  for (int e = 0; e < sim->shown.count; ++e) {
-    const cf_entry *entry = &sim->shown.entry[e];
-    const bool fits = entry->kind == CF_KIND_CELL || entry->kind == CF_KIND_FACE;
-    if (fits && used < size)
-      used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", entry->name);
+  for (int e = 0; e < sim->shown.count && used < size; ++e)
+    if (is_drawable(&sim->shown.entry[e]))
+      used +=
+          (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", sim->shown.entry[e].name);
+}
+
+/* Passes the latest sentence on, at a key of the scene. */
+static cf_status fail_at(const cf_scene *scene, const char *key) {
+  char why[CF_SENTENCE_MAX];
+  snprintf(why, sizeof why, "%s", cf_status_sentence());
+  return cf_scene_fail_at(scene, key, "%s", why);
+}
+
+static cf_status check_fields(const cf_sim *sim) {
+  const cf_scene *scene = sim->scene;
+  char key[64];
+  for (int i = 0; i < scene->output.fields.count; ++i) {
+    const char *name = scene->output.fields.item[i];
+    snprintf(key, sizeof key, "output.fields.%d", i);
+    if (cf_choice_check(&(cf_choice){1, &name}, &sim->shown) != CF_OK) return fail_at(scene, key);
   }
+  if (scene->output.fields.count > CF_FRAME_FIELDS)
+    return cf_scene_fail_at(scene, "output.fields", "more than %d fields", CF_FRAME_FIELDS);
+  return CF_OK;
+}
+
+static cf_status check_formats(const cf_sim *sim) {
+  if (has_format(sim, CF_SCENE_FORMAT_PLY) && sim->model->mesh == NULL)
+    return cf_scene_fail_at(sim->scene, "output.formats", "model %s has no surface to write as ply",
+                            sim->model->name);
+  if (has_format(sim, CF_SCENE_FORMAT_VDB) && !cf_vdb_built())
+    return cf_scene_fail_at(
+        sim->scene, "output.formats",
+        "vdb files need OpenVDB, which this program was built without: install libopenvdb-dev and "
+        "libboost-dev and build again");
+  return CF_OK;
 }
 
 cf_status cf_output_check(const cf_sim *sim) {
   const cf_scene *scene = sim->scene;
-  char known[512], key[64];
-  for (int i = 0; i < scene->output.fields.count; ++i) {
-    const cf_entry *e = cf_registry_find(&sim->shown, scene->output.fields.item[i]);
-    if (e != NULL && e->kind != CF_KIND_NUMBER && e->kind != CF_KIND_COUNTER) continue;
-    list_fields(sim, known, sizeof known);
-    snprintf(key, sizeof key, "output.fields.%d", i);
-    return cf_scene_fail_at(scene, key, "there is no field %s; there are %s", scene->output.fields.item[i],
-                            known);
-  }
-  if (scene->output.fields.count > CF_FRAME_FIELDS)
-    return cf_scene_fail_at(scene, "output.fields", "more than %d fields", CF_FRAME_FIELDS);
+  const cf_scene_preview *preview = &scene->output.preview;
+  char known[512];
+  CF_TRY(check_fields(sim));
+  CF_TRY(check_formats(sim));
   const cf_entry *shown = shown_field(sim);
-  if (shown == NULL || (shown->kind != CF_KIND_CELL && shown->kind != CF_KIND_FACE)) {
-    list_fields(sim, known, sizeof known);
+  if (shown == NULL || !is_drawable(shown)) {
+    list_drawable(sim, known, sizeof known);
     return cf_scene_fail_at(scene, "output.preview.field", "there is no field %s; there are %s",
-                            scene->output.preview.field, known);
+                            preview->field, known);
   }
   cf_colormap map;
-  if (scene->output.preview.map[0] != '\0' && cf_colormap_find(scene->output.preview.map, &map) != CF_OK) {
-    char why[CF_SENTENCE_MAX];
-    snprintf(why, sizeof why, "%s", cf_status_sentence());
-    return cf_scene_fail_at(scene, "output.preview.map", "%s", why);
-  }
+  if (preview->map[0] != '\0' && cf_colormap_find(preview->map, &map) != CF_OK)
+    return fail_at(scene, "output.preview.map");
   return CF_OK;
 }
 
@@ -110,16 +138,45 @@ static cf_status write_picture(const cf_sim *sim, const char *folder) {
   return s;
 }
 
+static cf_status write_surface(const cf_sim *sim, const char *folder, const cf_stamp *stamp, cf_mesh *mesh) {
+  cf_path path;
+  CF_TRY(sim->model->mesh(sim->state, mesh));
+  if (has_format(sim, CF_SCENE_FORMAT_VTKHDF))
+    CF_TRY(cf_frame_write_mesh(folder, sim->frame, &sim->grid, mesh, stamp));
+  if (!has_format(sim, CF_SCENE_FORMAT_PLY)) return CF_OK;
+  CF_TRY(cf_path_make(&path, "%s/mesh_%06lld.ply", folder, (long long)sim->frame));
+  return cf_ply_write(path.text, mesh, stamp);
+}
+
+/* A model's surface is made where the scene asks for ply; with vtkhdf it is written as that too. */
+static cf_status write_mesh(const cf_sim *sim, const char *folder, const cf_stamp *stamp) {
+  cf_mesh *mesh;
+  if (sim->model->mesh == NULL || !has_format(sim, CF_SCENE_FORMAT_PLY)) return CF_OK;
+  CF_TRY(cf_mesh_create(&mesh));
+  const cf_status s = write_surface(sim, folder, stamp, mesh);
+  cf_mesh_destroy(mesh);
+  return s;
+}
+
+static cf_status write_volumes(const cf_sim *sim, const char *folder, const cf_choice choice,
+                               const cf_stamp *stamp) {
+  const cf_scene_vdb *wish = &sim->scene->output.vdb;
+  const cf_vdb_plan plan = {.choice = choice,
+                            .half = wish->half == CF_SCENE_SWITCH_ON,
+                            .prune = wish->prune,
+                            .rate = sim->scene->time.frames};
+  return cf_vdb_write(folder, sim->frame, &sim->shown, &plan, stamp);
+}
+
 cf_status cf_output_frame(cf_sim *sim, const char *folder) {
-  const unsigned formats = sim->scene->output.formats;
   const cf_param_texts *fields = &sim->scene->output.fields;
-  const cf_frame_plan plan = {.count = fields->count, .names = fields->item};
+  const cf_choice choice = {fields->count, fields->item};
   const cf_stamp stamp = {.title = sim->scene->title, .time = sim->time, .step = sim->step};
   CF_TRY(cf_sim_show(sim));
-  if (formats & 1u << CF_SCENE_FORMAT_VTKHDF)
-    CF_TRY(cf_frame_write(folder, sim->frame, &sim->shown, &plan, &stamp));
-  if (formats & 1u << CF_SCENE_FORMAT_NPY)
-    CF_TRY(cf_npy_write(folder, sim->frame, &sim->shown, plan.count, plan.names));
-  if (formats & 1u << CF_SCENE_FORMAT_PNG) CF_TRY(write_picture(sim, folder));
-  return CF_OK;
+  if (has_format(sim, CF_SCENE_FORMAT_VTKHDF))
+    CF_TRY(cf_frame_write(folder, sim->frame, &sim->shown, &(cf_frame_plan){choice, 0}, &stamp));
+  if (has_format(sim, CF_SCENE_FORMAT_NPY)) CF_TRY(cf_npy_write(folder, sim->frame, &sim->shown, &choice));
+  if (has_format(sim, CF_SCENE_FORMAT_VDB)) CF_TRY(write_volumes(sim, folder, choice, &stamp));
+  CF_TRY(write_mesh(sim, folder, &stamp));
+  return has_format(sim, CF_SCENE_FORMAT_PNG) ? write_picture(sim, folder) : CF_OK;
 }

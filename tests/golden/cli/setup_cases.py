@@ -15,7 +15,7 @@ import unittest
 SETUP = ""
 
 BUILD = ("gcc g++ make cmake ninja-build pkg-config libfyaml-dev libmuparser-dev libudunits2-dev libhdf5-dev "
-         "libpng-dev libembree-dev libcmocka-dev").split()
+         "libpng-dev libembree-dev libopenvdb-dev libboost-dev libcmocka-dev").split()
 TEST = "python3 python3-numpy python3-h5py python3-venv".split()
 
 

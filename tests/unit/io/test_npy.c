@@ -44,7 +44,7 @@ static const cf_real *values_of(const output_case *c, const char *name, const ch
 
 static cf_status write_all(const output_case *c) {
   const char *const names[] = {"phi", "q", "ink", "ledger"};
-  return cf_npy_write(c->folder.text, 12, &c->registry, 4, names);
+  return cf_npy_write(c->folder.text, 12, &c->registry, &(cf_choice){4, names});
 }
 
 static void arrays_are_in_c_order_without_ghosts(void **state) {
@@ -88,9 +88,9 @@ static void two_dimensions_are_two(void **state) {
 static void unknown_names_and_folders_are_said(void **state) {
   const output_case *c = *state;
   const char *const names[] = {"fi"}, *const phi[] = {"phi"};
-  assert_int_equal(cf_npy_write(c->folder.text, 1, &c->registry, 1, names), CF_BAD_ARGUMENT);
+  assert_int_equal(cf_npy_write(c->folder.text, 1, &c->registry, &(cf_choice){1, names}), CF_BAD_ARGUMENT);
   assert_says("there is no field \"fi\"");
-  assert_int_equal(cf_npy_write("/no/such/folder", 1, &c->registry, 1, phi), CF_CANNOT_WRITE);
+  assert_int_equal(cf_npy_write("/no/such/folder", 1, &c->registry, &(cf_choice){1, phi}), CF_CANNOT_WRITE);
   assert_says("/no/such/folder/fields_000001_phi.npy: cannot be written: No such file or directory");
 }
 
