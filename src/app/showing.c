@@ -32,6 +32,16 @@ static cf_style usual_style(const cf_scene *scene) {
   return scene->dim == 3 ? CF_STYLE_INK : CF_STYLE_FIELD;
 }
 
+static cf_status no_style(const char *given) {
+  static const char words[] = CF_WORDS(CF_RENDER_STYLE_WORDS);
+  const int length = (int)sizeof words - 2; /* without the last bar */
+  char near[32];
+  if (cf_param_word_nearest(words, given, near, sizeof near))
+    return cf_fail(CF_BAD_USAGE, "--style %.64s: must be one of %.*s; did you mean %s?", given, length, words,
+                   near);
+  return cf_fail(CF_BAD_USAGE, "--style %.64s: must be one of %.*s", given, length, words);
+}
+
 static cf_status take_style(cf_showing *s, const cf_arguments *a) {
   char word[32];
   if (a->style == NULL) {
@@ -39,13 +49,7 @@ static cf_status take_style(cf_showing *s, const cf_arguments *a) {
     s->look.style = cf_style_find(word);
   } else {
     s->look.style = cf_style_find(a->style);
-    char near[32];
-    const bool is_auto = strcmp(a->style, "auto") == 0;
-    if (s->look.style == CF_STYLES && !is_auto) {
-      const bool like = cf_param_word_nearest(CF_WORDS(CF_RENDER_STYLE_WORDS), a->style, near, sizeof near);
-      return cf_fail(CF_BAD_USAGE, "--style %.64s: must be one of %s%s%s", a->style,
-                     CF_WORDS(CF_RENDER_STYLE_WORDS), like ? "; did you mean " : "", like ? near : "");
-    }
+    if (s->look.style == CF_STYLES && strcmp(a->style, "auto") != 0) return no_style(a->style);
   }
   if (s->look.style == CF_STYLES) s->look.style = usual_style(s->scene);
   return CF_OK;

@@ -7,6 +7,7 @@
 #include "base/real.h"
 #include "render/colormap.h"
 #include "render/look_part.h"
+#include "render/plot.h"
 
 static const struct {
   const char *name;
@@ -41,6 +42,25 @@ const cf_exhibit_field *cf_exhibit_find(const cf_exhibit *e, const char *name) {
   return NULL;
 }
 
+/* Into the lower right corner; beside a field with its axes, so that nothing of it is hidden. */
+static cf_status set_in(const cf_look *look, cf_canvas *c) {
+  const cf_canvas *inset = look->inset;
+  const int rim = CF_MAX(c->height / 60, 6), y = CF_MAX(c->height - inset->height - rim, 0);
+  if (look->style == CF_STYLE_FIELD) {
+    cf_canvas wider;
+    CF_TRY(cf_canvas_create(&wider, (c->width + inset->width + rim + 1) & ~1, c->height, cf_plot_ground));
+    cf_canvas_copy(&wider, 0, 0, c);
+    cf_canvas_destroy(c);
+    *c = wider;
+    cf_canvas_copy(c, c->width - inset->width - rim, y, inset);
+    return CF_OK;
+  }
+  const int x = c->width - inset->width - rim;
+  cf_canvas_fill(c, x - 1, y - 1, inset->width + 2, inset->height + 2, (cf_colour){120, 120, 125});
+  cf_canvas_copy(c, x, y, inset);
+  return CF_OK;
+}
+
 cf_status cf_look_draw(const cf_look *look, const cf_exhibit *e, cf_canvas *c) {
   *c = (cf_canvas){.rgb = NULL};
   if (look->style < 0 || look->style >= CF_STYLES)
@@ -49,13 +69,7 @@ cf_status cf_look_draw(const cf_look *look, const cf_exhibit *e, cf_canvas *c) {
     return cf_fail(CF_BAD_ARGUMENT, "a picture of %d x %d pixels: sides must be 16 at least", look->width,
                    look->height);
   CF_TRY(styles[look->style].draw(look, e, c));
-  if (look->inset == NULL) return CF_OK;
-  const int rim = CF_MAX(c->height / 60, 6), x = c->width - look->inset->width - rim;
-  const int y = c->height - look->inset->height - rim;
-  cf_canvas_fill(c, x - 1, y - 1, look->inset->width + 2, look->inset->height + 2,
-                 (cf_colour){120, 120, 125});
-  cf_canvas_copy(c, x, y, look->inset);
-  return CF_OK;
+  return look->inset != NULL ? set_in(look, c) : CF_OK;
 }
 
 cf_status cf_look_no(const cf_look *look, const char *what) {
@@ -76,6 +90,28 @@ static const cf_mesh_attribute *attribute_of(const cf_exhibit *e) {
   return NULL;
 }
 
+/* Ink and smoke begin at 0, and are at their densest where all but the densest hundredth of what there is has been
+ * counted: the few cells of a source do not make all the rest pale. */
+static void widen_by_field(const cf_look *look, const cf_exhibit *e, double *low, double *high) {
+  enum { BINS = 1024 };
+  const cf_box *b = &e->grid->box;
+  double least = (double)INFINITY, most = -(double)INFINITY, amount[BINS] = {0}, sum = 0;
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
+    for (int i = 0; i < b->n[0]; ++i) widen(&least, &most, (double)e->field[0].at[cf_box_row(b, r) + i]);
+  if ((look->style != CF_STYLE_INK && look->style != CF_STYLE_SMOKE) || !(most > 0)) {
+    widen(low, high, least), widen(low, high, most);
+    return;
+  }
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
+    for (int i = 0; i < b->n[0]; ++i) {
+      const double v = (double)e->field[0].at[cf_box_row(b, r) + i];
+      if (v > 0 && isfinite(v)) amount[CF_MIN((int)(v / most * BINS), BINS - 1)] += v, sum += v;
+    }
+  int top = BINS - 1;
+  for (double above = amount[top]; top > 0 && above < 0.01 * sum;) above += amount[--top];
+  widen(low, high, 0), widen(low, high, most * (top + 1) / BINS);
+}
+
 cf_status cf_exhibit_range(const cf_look *look, const cf_exhibit *e, double *low, double *high) {
   const cf_mesh_attribute *a = attribute_of(e);
   if (look->style == CF_STYLE_PARTICLES) {
@@ -91,9 +127,7 @@ cf_status cf_exhibit_range(const cf_look *look, const cf_exhibit *e, double *low
       widen(low, high, s.low), widen(low, high, s.high);
       return CF_OK;
     }
-    const cf_box *b = &e->grid->box;
-    for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
-      for (int i = 0; i < b->n[0]; ++i) widen(low, high, (double)e->field[0].at[cf_box_row(b, r) + i]);
+    widen_by_field(look, e, low, high);
   }
   return CF_OK;
 }

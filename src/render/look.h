@@ -23,11 +23,11 @@
 #include "render/cards.h"
 #include "render/preview.h"
 
-#define CF_STYLE_LIST(S)                                                                                \
-  S(field, FIELD)                                                                                       \
-  S(ink, INK)                                                                                           \
-  S(smoke, SMOKE) S(crystal, CRYSTAL) S(coral, CORAL) S(mesh, MESH) S(gel, GEL) S(particles, PARTICLES) \
-      S(cards, CARDS)
+#define CF_STYLE_LIST(S) \
+  S(field, FIELD)        \
+  S(ink, INK)            \
+  S(smoke, SMOKE)        \
+  S(crystal, CRYSTAL) S(coral, CORAL) S(mesh, MESH) S(gel, GEL) S(particles, PARTICLES) S(cards, CARDS)
 
 typedef enum cf_style {
 #define CF_STYLE_ENUM(lower, upper) CF_STYLE_##upper,

@@ -63,6 +63,7 @@ enum { TURNS = 12 };
 static cf_vec see(const cf_stage *stage, cf_ray ray, const cf_vec behind, cf_dice *dice, float *distance) {
   const cf_studio *s = stage->studio;
   cf_vec light = {0, 0, 0}, through = {1, 1, 1};
+  bool lamps = true; /* are seen through what is all clear; through jelly they would only be specks */
   *distance = INFINITY;
   for (int turn = 0; turn < TURNS; ++turn) {
     cf_hit hit;
@@ -70,7 +71,7 @@ static cf_vec see(const cf_stage *stage, cf_ray ray, const cf_vec behind, cf_dic
     const bool met = cf_rays_hit(stage->rays, &ray, 0, INFINITY, &hit);
     cross_media(s, &ray, met ? hit.distance : INFINITY, dice, &light, &through);
     if (!met) {
-      const cf_vec seen = turn == 0 ? behind : cf_surface_around(stage, ray.along);
+      const cf_vec seen = turn == 0 ? behind : cf_surface_around(stage, ray.along, lamps);
       return cf_vec_add(light, cf_vec_times(through, seen));
     }
     if (turn == 0) *distance = hit.distance;
@@ -83,6 +84,7 @@ static cf_vec see(const cf_stage *stage, cf_ray ray, const cf_vec behind, cf_dic
     cf_dice_pair(dice, chance);
     if (chance[0] >= p.material->clear)
       return cf_vec_add(light, cf_vec_times(through, cf_surface_light(stage, &ray, &p, dice)));
+    lamps = lamps && p.material->clear >= 1;
     pass_on(&p, &ray, chance[1]);
   }
   return light;

@@ -41,9 +41,9 @@ void cf_surface_meet(const cf_stage *s, const cf_ray *ray, const cf_hit *hit, cf
 
 /* --- around ---------------------------------------------------------------------------------------------------------- */
 
-cf_vec cf_surface_around(const cf_stage *s, const cf_vec along) {
+cf_vec cf_surface_around(const cf_stage *s, const cf_vec along, const bool lamps) {
   cf_vec sum = cf_sky_from(&s->studio->sky, along);
-  for (int l = 0; l < s->studio->lights; ++l) {
+  for (int l = 0; lamps && l < s->studio->lights; ++l) {
     const cf_light *light = &s->studio->light[l];
     const float spread = fmaxf(light->spread, 0.02f), edge = cosf(1.3f * spread), full = cosf(0.7f * spread);
     const float seen = cf_smooth_step(edge, full, cf_vec_dot(along, light->toward));
@@ -92,12 +92,14 @@ static cf_vec toward(const cf_light *light, cf_dice *dice) {
   return cf_vec_unit(cf_vec_along(cf_vec_along(light->toward, wide * disc[0], s), wide * disc[1], t));
 }
 
-/* GGX's highlight with Smith's shadowing, times the cosine to the light. */
-static float highlight(const cf_point *p, const cf_vec view, const cf_vec light) {
-  const cf_vec half = cf_vec_unit(cf_vec_add(view, light));
+/* GGX's highlight with Smith's shadowing, times the cosine to the light; of a large light as of a small one on a rougher
+ * surface. */
+static float highlight(const cf_point *p, const cf_vec view, const cf_light *from) {
+  const cf_vec light = from->toward, half = cf_vec_unit(cf_vec_add(view, light));
   const float nl = cf_vec_dot(p->normal, light), nv = fmaxf(cf_vec_dot(p->normal, view), 1e-3f);
   if (nl <= 0 || p->material->gloss <= 0) return 0;
-  const float a = fmaxf(p->material->roughness * p->material->roughness, 2e-3f), a2 = a * a;
+  const float rough = p->material->roughness * p->material->roughness;
+  const float a2 = fmaxf(rough * rough + 0.25f * from->spread * from->spread, 1e-5f);
   const float nh = cf_vec_dot(p->normal, half), d = nh * nh * (a2 - 1) + 1;
   const float spread = a2 / (d * d),
               shadow = 0.5f / (nl * sqrtf(nv * nv * (1 - a2) + a2) + nv * sqrtf(nl * nl * (1 - a2) + a2));
@@ -119,7 +121,7 @@ static cf_vec from_light(const cf_stage *s, const cf_ray *ray, const cf_point *p
   if (cf_vec_luminance(kept) <= 0) return kept;
   for (int i = 0; i < s->studio->media; ++i)
     kept = cf_vec_times(kept, cf_medium_shade(s->studio->medium[i], l, p->at));
-  const float shine = highlight(p, view, way);
+  const float shine = highlight(p, view, light);
   const cf_vec sent = cf_vec_add(cf_vec_scale(diffuse, p->colour), (cf_vec){shine, shine, shine});
   return cf_vec_times(cf_vec_times(sent, kept), light->colour);
 }

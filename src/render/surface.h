@@ -33,8 +33,8 @@ typedef struct cf_point {
 
 void cf_surface_meet(const cf_stage *s, const cf_ray *ray, const cf_hit *hit, cf_point *p);
 
-/* What comes from a direction in which nothing is: the sky, and the lights as large as they are. */
-cf_vec cf_surface_around(const cf_stage *s, cf_vec along);
+/* What comes from a direction in which nothing is: the sky, and, with `lamps`, the lights as large as they are. */
+cf_vec cf_surface_around(const cf_stage *s, cf_vec along, bool lamps);
 
 /* The part of light that is reflected where it comes in under an angle of this cosine. */
 float cf_surface_mirror(const cf_point *p, float cosine);
