@@ -40,7 +40,9 @@ programs: setup
 
 # --- words that run something -----------------------------------------------------------------------------
 
-demo: programs
+demo: setup
+	@$(MAKE) --no-print-directory configure
+	@cmake --build $(BUILD) --parallel $(JOBS) --target cattaneo_program_double
 	@CATTANEO=$(abspath $(BUILD))/bin/cattaneo examples/cone/demo.sh out/cone
 
 gallery: programs
