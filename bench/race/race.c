@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * race [NAME] [--n N] [--sigma S,...] [--threads N] [--rounds N]
+ * race [NAME] [--own] [--n N] [--sigma S,...] [--threads N] [--rounds N]
+ *
+ * --own: one thread, and its own time, for machines that others use as well.
  *
  * Every race is a set of heats; a heat is a set of entries, each a solver with a system. Rounds go through the
  * entries in turn. Printed are an entry's median, what it takes a cell, and the median of (first entry's time a cell /
@@ -31,7 +33,7 @@ static cf_status ours_solve(void *made, const cf_bench_case *c, const cf_bench_s
                             int *iterations) {
   (void)made;
   cf_solve_report report;
-  CF_TRY(cf_bench_system_solve(s, c->tolerance, &report, seconds));
+  CF_TRY(cf_bench_system_solve(s, c, &report, seconds));
   *iterations = report.iterations;
   return CF_OK;
 }
@@ -227,7 +229,7 @@ static const struct {
 enum { RACES = sizeof races / sizeof *races };
 
 static int usage(void) {
-  fputs("usage: race [NAME] [--n N] [--sigma S,...] [--threads N] [--rounds N]; names:", stderr);
+  fputs("usage: race [NAME] [--own] [--n N] [--sigma S,...] [--threads N] [--rounds N]; names:", stderr);
   for (int v = 0; v < RACES; ++v) fprintf(stderr, " %s", races[v].name);
   fputs("; inf is Poisson\n", stderr);
   return 2;
@@ -246,6 +248,11 @@ static bool read_arguments(const int argc, char **argv, options *o, const char *
     char *value = v + 1 < argc ? argv[v + 1] : NULL;
     if (word[0] != '-') {
       *name = word;
+      continue;
+    }
+    if (strcmp(word, "--own") == 0) {
+      o->c.own_time = true;
+      o->c.threads = 1;
       continue;
     }
     if (value == NULL) return false;

@@ -23,6 +23,8 @@ typedef struct cf_bench_case {
   int threads;
   const char *walls; /* a letter an axis: i insulated, o open, p periodic; NULL: all insulated */
   cf_bench_side side;
+  bool
+      own_time; /* seconds are those of the calling thread alone: for one thread where others want the machine */
 } cf_bench_case;
 
 typedef struct cf_bench_system {
@@ -48,7 +50,7 @@ void cf_bench_system_destroy(cf_bench_system *s);
 cf_status cf_bench_fill_side(const cf_bench_case *c, const cf_grid *g, cf_cell b);
 
 /* x = 0, then one solve; its seconds. */
-cf_status cf_bench_system_solve(const cf_bench_system *s, double tolerance, cf_solve_report *report,
+cf_status cf_bench_system_solve(const cf_bench_system *s, const cf_bench_case *c, cf_solve_report *report,
                                 double *seconds);
 
 /* Creates, solves until `least` times and `seconds` are reached (at most 25 times), destroys. */
@@ -62,7 +64,7 @@ double cf_bench_least_bytes(const cf_bench_case *c, const cf_solve_report *repor
  * counted. CF_NO_MEMORY. */
 cf_status cf_bench_stream(int threads, double *bytes_per_second);
 
-double cf_bench_clock(void); /* s */
+double cf_bench_clock(bool own_time); /* s */
 
 /* Sorts v. */
 double cf_bench_median(double *v, int count);

@@ -45,6 +45,16 @@ typedef enum cf_pass_stage {
 /* Longest list of stages in one pass. */
 #define CF_PASS_STAGES 40
 
+/* What FORM adds up along every row; UPDATE does so for the residual and, if asked, x. */
+typedef enum cf_pass_sum {
+  CF_SUM_RESIDUAL, /* of the squares of b - A x (FORM) or r (UPDATE) */
+  CF_SUM_X2,
+  CF_SUM_X,
+  CF_SUM_B2,
+  CF_SUM_B,
+  CF_PASS_SUMS
+} cf_pass_sum;
+
 typedef struct cf_pass {
   const cf_split *at, *coarse; /* coarse: NULL on the coarsest level */
   int count;
@@ -57,9 +67,10 @@ typedef struct cf_pass {
   double alpha, beta; /* not scaled */
   double shift;       /* FORM subtracts it from b - A x */
   double scale;       /* FORM divides by it */
-  double gain;        /* UPDATE: x += gain e */
+  double gain, lift;  /* UPDATE: x += gain e + lift */
+  bool sums_of_x;     /* UPDATE adds up x and its squares as well */
   ptrdiff_t sums;     /* pieces of rows that the level has */
-  double *rows; /* `sums` numbers for the squares of b - A x (FORM) or r (UPDATE), then of b, then of x */
+  double *rows;       /* `sums` numbers of each kind of cf_pass_sum */
 } cf_pass;
 
 /* Pieces of some rows of a plane, elements [from, to) of their halves, and a thread's own memory. */

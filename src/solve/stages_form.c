@@ -4,15 +4,6 @@
  */
 #include "solve/stages_part.h"
 
-CF_KERNEL double square_sum(const int n, const cf_real *f) {
-  double lane[CF_SUM_LANES] = {0};
-  int i = 0;
-  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
-    for (int l = 0; l < CF_SUM_LANES; ++l) lane[l] += (double)f[i + l] * (double)f[i + l];
-  for (int l = 0; i < n; ++i, ++l) lane[l] += (double)f[i] * (double)f[i];
-  return cf_sum_lanes(lane);
-}
-
 CF_KERNEL double square_sum_of_doubles(const int n, const double *f) {
   double lane[CF_SUM_LANES] = {0};
   for (int i = 0; i < n; i += CF_SUM_LANES)
@@ -70,7 +61,6 @@ CF_KERNEL forming forming_of(const int dim, const cf_pass *p, const cf_strip *t,
                    .residual = t->scratch};
 }
 
-/* The sums: squares of b - A x, of b and of x. */
 CF_KERNEL void form_rows(const int dim, const cf_pass *p, const cf_strip *t) {
   const cf_split *s = p->at;
   const int n = cf_natural_count(s, t), whole = 2 * (t->to - t->from);
@@ -79,10 +69,10 @@ CF_KERNEL void form_rows(const int dim, const cf_pass *p, const cf_strip *t) {
     const ptrdiff_t to = j * s->row + t->k * s->plane + t->from;
     form(dim, n, &f);
     for (int i = n; i < whole; ++i) f.residual[i] = 0;
-    double *sums = p->rows + cf_place_of_sum(t, j);
-    sums[0] = square_sum_of_doubles(whole, f.residual);
-    sums[p->sums] = square_sum(n, f.b);
-    sums[2 * p->sums] = square_sum(n, f.x);
+    double *sums = cf_sums_of(p, t, j);
+    sums[CF_SUM_RESIDUAL * p->sums] = square_sum_of_doubles(whole, f.residual);
+    cf_sum_row(n, f.x, &sums[CF_SUM_X * p->sums], &sums[CF_SUM_X2 * p->sums]);
+    cf_sum_row(n, f.b, &sums[CF_SUM_B * p->sums], &sums[CF_SUM_B2 * p->sums]);
     split_scaled(whole / 2, 1 / p->scale, f.residual, s->r + to, s->r + to + s->odd);
   }
 }

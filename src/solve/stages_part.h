@@ -89,8 +89,27 @@ static inline int cf_natural_count(const cf_split *s, const cf_strip *t) {
   return CF_MIN(2 * t->to, s->n[0]) - 2 * t->from;
 }
 
-static inline ptrdiff_t cf_place_of_sum(const cf_strip *t, const int j) {
-  return t->sum + (j - t->j) * t->sum_step;
+/* Where the sums of row j go; those of the next kind are p->sums further. */
+static inline double *cf_sums_of(const cf_pass *p, const cf_strip *t, const int j) {
+  return p->rows + t->sum + (j - t->j) * t->sum_step;
+}
+
+/* The sum of f and of its squares along a row. */
+CF_KERNEL void cf_sum_row(const int n, const cf_real *f, double *sum, double *squares) {
+  double lane[CF_SUM_LANES] = {0}, square[CF_SUM_LANES] = {0};
+  int i = 0;
+  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
+    for (int l = 0; l < CF_SUM_LANES; ++l) {
+      const double v = (double)f[i + l];
+      lane[l] += v;
+      square[l] += v * v;
+    }
+  for (int l = 0; i < n; ++i, ++l) {
+    lane[l] += (double)f[i];
+    square[l] += (double)f[i] * (double)f[i];
+  }
+  *sum = cf_sum_lanes(lane);
+  *squares = cf_sum_lanes(square);
 }
 
 /* --- stages ------------------------------------------------------------------------------------------- */

@@ -80,16 +80,16 @@ void cf_stage_last(const cf_split *s, const cf_strip *t, const float omega) {
 
 /* --- taking the correction ---------------------------------------------------------------------------- */
 
-/* x += gain e, by way of e in its natural order. */
-CF_KERNEL void add(const int n, const double gain, const float *even, const float *odd, float *line,
-                   cf_real *x) {
+/* x += gain e + lift, by way of e in its natural order. */
+CF_KERNEL void add(const int n, const double gain, const double lift, const float *even, const float *odd,
+                   float *line, cf_real *x) {
   CF_ROW_LOOP
   for (int m = 0; m < (n + 1) / 2; ++m) {
     line[2 * m] = even[m];
     line[2 * m + 1] = odd[m];
   }
   CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) x[i] = (cf_real)((double)x[i] + gain * (double)line[i]);
+  for (int i = 0; i < n; ++i) x[i] = (cf_real)((double)x[i] + (gain * (double)line[i] + lift));
 }
 
 /* The sum of squares along a piece of both halves: in single precision 16 lanes apart; beyond it in double. */
@@ -125,8 +125,8 @@ CF_KERNEL void update_rows(const int dim, const cf_pass *p, const cf_strip *t, c
     const cf_half red = cf_half_of(dim, s, j, t->k, 0), black = cf_half_of(dim, s, j, t->k, 1);
     const ptrdiff_t at = j * s->row + t->k * s->plane + t->from;
     if (t->next_k >= 0) fetch_x(p, t, j);
-    add(n, p->gain, s->e + at, s->e + at + s->odd, t->scratch,
-        p->x + cf_box_at(&s->plain->box, 2 * t->from, j, t->k));
+    cf_real *x = p->x + cf_box_at(&s->plain->box, 2 * t->from, j, t->k);
+    add(n, p->gain, p->lift, s->e + at, s->e + at + s->odd, t->scratch, x);
     if (s->odd_seam) {
       cf_first_half(&red, t, omega);
     } else {
@@ -137,7 +137,9 @@ CF_KERNEL void update_rows(const int dim, const cf_pass *p, const cf_strip *t, c
         restart_half(dim, 0, &red, t, omega);
       clear_pad(s, t, &red);
     }
-    p->rows[cf_place_of_sum(t, j)] = squares(t->to - t->from, s->r + at, s->r + at + s->odd);
+    double *sums = cf_sums_of(p, t, j);
+    sums[CF_SUM_RESIDUAL * p->sums] = squares(t->to - t->from, s->r + at, s->r + at + s->odd);
+    if (p->sums_of_x) cf_sum_row(n, x, &sums[CF_SUM_X * p->sums], &sums[CF_SUM_X2 * p->sums]);
   }
 }
 CF_CLONES static void update_rows_2d(const cf_pass *p, const cf_strip *t, const float omega) {

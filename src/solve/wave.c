@@ -67,17 +67,24 @@ static cf_strip strip_of(const cf_wave *w, const cf_split *s, const int j, const
 
 /* --- stage by stage ----------------------------------------------------------------------------------- */
 
+/* Rows of a plane that go together: many, but enough strips for all threads. */
+static int strip_height(const cf_split *s, const int threads) {
+  if (threads == 1 || s->n[2] >= 4 * threads) return s->n[1];
+  return CF_MAX(1, s->n[1] / (4 * threads));
+}
+
 static void run_stages(const cf_wave *w, const cf_pass *p) {
   const cf_split *s = p->at;
-  const ptrdiff_t rows = (ptrdiff_t)s->n[1] * s->n[2];
-  const int pieces = cf_wave_pieces(s), threads = (ptrdiff_t)s->n[0] * rows < SERIAL_CELLS ? 1 : w->threads;
+  const ptrdiff_t cells = (ptrdiff_t)s->n[0] * s->n[1] * s->n[2];
+  const int pieces = cf_wave_pieces(s), threads = cells < SERIAL_CELLS ? 1 : w->threads;
+  const int height = strip_height(s, threads), strips = (s->n[1] + height - 1) / height;
   for (int v = 0; v < p->count; ++v) {
     if (s->has_seam && cf_stage_reads_around(p->stage[v])) cf_split_fill_seams(s, s->e);
 #pragma omp parallel for schedule(static) num_threads(threads)
-    for (ptrdiff_t r = 0; r < rows; ++r)
+    for (int q = 0; q < strips * s->n[2]; ++q)
       for (int piece = 0; piece < pieces; ++piece) {
-        const int j = (int)(r % s->n[1]);
-        const cf_strip t = strip_of(w, s, j, j + 1, (int)(r / s->n[1]), piece);
+        const int j = q % strips * height, end = CF_MIN(j + height, s->n[1]);
+        const cf_strip t = strip_of(w, s, j, end, q / strips, piece);
         cf_stage_run(p, v, &t);
       }
   }

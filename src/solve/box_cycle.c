@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The cycle over split levels, as passes.
+ *
+ * The first part of a V-cycle (half sweeps on e = 0, restriction) is done in the pass that made its residual, and
+ * the second part (prolongation, half sweeps) begins the pass that takes the correction. Where the next
+ * residual is expected to be small enough the pass ends there.
+ */
+#include <math.h>
+
+#include "grid/sweep.h"
+#include "solve/box_part.h"
+#include "solve/pcg.h"
+
+/* Half sweeps leave this much of the error on a coarsest level that is no line. */
+#define COARSEST_GAIN 0.02
+/* Sweeps after the coarse correction on levels below the finest. They cost little there, and with three in place of
+ * one 5 cycles do what 6 did. */
+#define COARSE_SWEEPS 3
+/* A pass of half sweeps alone gains at most this, and has at most so many of them. */
+#define PASS_GAIN   1e-7
+#define PASS_SWEEPS 32
+
+/* --- passes ------------------------------------------------------------------------------------------- */
+
+static void push(cf_pass *p, const cf_pass_stage stage, const double omega) {
+  p->omega[p->count] = (float)omega;
+  p->stage[p->count++] = stage;
+}
+
+/* After FIRST, or where that does not do: the half sweeps before the coarse correction. */
+static void push_start(cf_pass *p) {
+  if (p->at->odd_seam) {
+    push(p, CF_PASS_CLEAR, 0);
+    push(p, CF_PASS_RED, 0);
+    push(p, CF_PASS_BLACK, 0);
+  } else {
+    push(p, CF_PASS_SECOND, 0);
+  }
+}
+
+/* The last black half sweep, and taking the correction. */
+static void push_end(cf_pass *p, const double omega_last, const double omega_first) {
+  if (p->at->odd_seam) {
+    push(p, CF_PASS_BLACK, omega_last);
+    push(p, CF_PASS_RESIDUAL, 0);
+  } else {
+    push(p, CF_PASS_LAST, omega_last);
+  }
+  push(p, CF_PASS_UPDATE, omega_first);
+}
+
+/* Half sweeps over-relaxed so that `count` of them in a row, red first, damp all errors alike; the first is FIRST. */
+static void push_half_sweeps(cf_pass *p, const double jacobi, const int count, const bool finest) {
+  const double j2 = jacobi * jacobi;
+  if (p->at->odd_seam) push(p, CF_PASS_CLEAR, 0);
+  double omega = 1;
+  for (int v = 0; v < count; ++v) {
+    if (p->at->odd_seam)
+      omega = 1; /* neighbours of one colour: no such theory */
+    else if (v > 0)
+      omega = v == 1 ? 1 / (1 - j2 / 2) : 1 / (1 - j2 * omega / 4);
+    if (v == count - 1 && finest)
+      push_end(p, omega, 1);
+    else if (v == 1 && !p->at->odd_seam)
+      push(p, CF_PASS_SECOND, omega);
+    else if (v > 1 || p->at->odd_seam)
+      push(p, v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, omega);
+  }
+}
+
+/* An even number of half sweeps that gain so much, at least 4. */
+static int half_sweeps_for(const double jacobi, const double gain) {
+  const double root = sqrt(1 - jacobi * jacobi), per_sweep = jacobi / (1 + root);
+  const int count = per_sweep > 0 ? (int)ceil(log(gain / 2) / log(per_sweep)) : 4;
+  return CF_MIN(CF_MAX((count + 1) / 2 * 2, 4), PASS_SWEEPS);
+}
+
+static cf_pass pass_on(const cf_box_solver *f, const int l) {
+  return (cf_pass){.at = &f->level[l], .coarse = l + 1 < f->depth ? &f->level[l + 1] : NULL};
+}
+
+static cf_pass pass_on_finest(const cf_box_solver *f, const cf_cell b, const cf_cell x) {
+  cf_pass p = pass_on(f, 0);
+  p.x = x.at;
+  p.b = b.at;
+  p.alpha = f->alpha;
+  p.beta = f->beta;
+  p.sums = f->sums;
+  p.rows = f->rows;
+  return p;
+}
+
+/* --- the cycle below the finest level ------------------------------------------------------------------ */
+
+/* Elimination, through the plain level's fields. */
+static void solve_coarsest(const cf_box_solver *f) {
+  const cf_split *s = &f->level[f->depth - 1];
+  const cf_level plain = cf_box_coarsest(f);
+  for (int k = 0; k < s->n[2]; ++k)
+    for (int j = 0; j < s->n[1]; ++j)
+      for (int i = 0; i < s->n[0]; ++i)
+        plain.b.at[cf_box_at(&plain.box, i, j, k)] =
+            (cf_real)(f->scale * (double)s->r[j * s->row + k * s->plane + cf_split_at(s, i)]);
+  if (cf_level_is_line(&plain))
+    cf_level_solve_line(&plain, plain.b, f->line, plain.x);
+  else
+    cf_direct_solve(&plain, &f->direct, plain.b, plain.x);
+  if (f->lost) cf_level_remove_mean(&plain, plain.x);
+  for (int k = 0; k < s->n[2]; ++k)
+    for (int j = 0; j < s->n[1]; ++j)
+      for (int i = 0; i < s->n[0]; ++i)
+        s->e[j * s->row + k * s->plane + cf_split_at(s, i)] =
+            (float)plain.x.at[cf_box_at(&plain.box, i, j, k)];
+}
+
+/* e from r on level l, whose first half sweep is done. */
+static void correct(const cf_box_solver *f, const int l) {
+  if (cf_level_is_solved_directly(f->level[l].plain)) {
+    solve_coarsest(f);
+    return;
+  }
+  cf_pass down = pass_on(f, l), up = down;
+  if (l == f->depth - 1) {
+    push_half_sweeps(&down, f->jacobi, half_sweeps_for(f->jacobi, COARSEST_GAIN), false);
+    cf_wave_run(&f->wave, &down);
+    return;
+  }
+  push_start(&down);
+  push(&down, CF_PASS_RESTRICT, 0);
+  cf_wave_run(&f->wave, &down);
+  correct(f, l + 1);
+  cf_split_fill_seams(down.coarse, down.coarse->e);
+  push(&up, CF_PASS_PROLONG, 0);
+  for (int v = 0; v < COARSE_SWEEPS; ++v) {
+    push(&up, CF_PASS_RED, 0);
+    push(&up, CF_PASS_BLACK, 0);
+  }
+  cf_wave_run(&f->wave, &up);
+}
+
+/* --- passes over the finest level ---------------------------------------------------------------------- */
+
+static void push_first_part(const cf_box_solver *f, cf_pass *p) {
+  push_start(p);
+  if (f->depth > 1) push(p, CF_PASS_RESTRICT, 0);
+}
+
+static double sum_of(const cf_box_solver *f, const cf_pass_sum kind) {
+  return cf_sum_ordered(f->rows + kind * f->sums, f->sums);
+}
+
+static void take_form_sums(const cf_box_solver *f, cf_box_iteration *it) {
+  it->rr = sum_of(f, CF_SUM_RESIDUAL);
+  it->bb = sum_of(f, CF_SUM_B2);
+  it->xx = sum_of(f, CF_SUM_X2);
+  it->b_sum = sum_of(f, CF_SUM_B);
+  it->x_sum = sum_of(f, CF_SUM_X);
+  it->start = it->rr;
+}
+
+/* The last step of every pass that corrects x. */
+static void run_update(const cf_box_solver *f, cf_pass *p, cf_box_iteration *it) {
+  const double before = it->rr;
+  p->gain = it->scale / f->scale;
+  p->lift = it->lift;
+  p->sums_of_x = f->singular;
+  cf_wave_run(&f->wave, p);
+  it->lift = 0;
+  it->rr = sum_of(f, CF_SUM_RESIDUAL) * it->scale * it->scale;
+  it->rate = sqrt(it->rr / before);
+  if (!p->sums_of_x) return;
+  it->x_sum = sum_of(f, CF_SUM_X);
+  it->xx = sum_of(f, CF_SUM_X2);
+}
+
+void cf_box_form(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b, const cf_cell x,
+                 cf_box_iteration *it) {
+  cf_halo_fill(&A->grid.box, &A->outside, 1, -1, x.at);
+  cf_pass p = pass_on_finest(f, b, x);
+  p.scale = it->scale;
+  p.shift = it->shift;
+  push(&p, CF_PASS_FORM, f->depth > 1 ? 0 : 1);
+  if (f->depth > 1) push_first_part(f, &p);
+  cf_wave_run(&f->wave, &p);
+  take_form_sums(f, it);
+  it->ready = true;
+}
+
+void cf_box_cycle(const cf_box_solver *f, const cf_cell b, const cf_cell x, const bool last,
+                  cf_box_iteration *it) {
+  cf_pass p = pass_on_finest(f, b, x);
+  if (!it->ready) {
+    cf_pass first = p;
+    push_first_part(f, &first);
+    cf_wave_run(&f->wave, &first);
+  }
+  correct(f, 1);
+  cf_split_fill_seams(p.coarse, p.coarse->e);
+  push(&p, CF_PASS_PROLONG, 0);
+  push(&p, CF_PASS_RED, 0);
+  push_end(&p, 0, 0);
+  if (!last) push_first_part(f, &p);
+  run_update(f, &p, it);
+  it->ready = !last;
+}
+
+void cf_box_sweeps(const cf_box_solver *f, const cf_cell b, const cf_cell x, const double gain,
+                   cf_box_iteration *it) {
+  cf_pass p = pass_on_finest(f, b, x);
+  push_half_sweeps(&p, f->jacobi, half_sweeps_for(f->jacobi, CF_MAX(gain, PASS_GAIN)), true);
+  run_update(f, &p, it);
+}
