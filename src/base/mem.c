@@ -58,3 +58,17 @@ cf_status cf_pages_reserve(void **pages, const size_t bytes, const bool dense) {
 void cf_pages_release(void *pages, const size_t bytes) {
   if (pages != NULL) munmap(pages, bytes);
 }
+
+cf_status cf_mem_room(const size_t bytes) {
+  void *room = MAP_FAILED;
+  if (!told_to_fail())
+    room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED)
+    return cf_fail(
+        CF_NO_MEMORY,
+        "less than %.3g MB of address space are left (is there a limit? see `ulimit -v`): use fewer cells or "
+        "lift the limit",
+        (double)bytes / 1e6);
+  munmap(room, bytes);
+  return CF_OK;
+}

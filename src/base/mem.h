@@ -27,6 +27,10 @@ cf_status cf_new_text(char **copy, const char *text, size_t length);
 cf_status cf_pages_reserve(void **pages, size_t bytes, bool dense);
 void cf_pages_release(void *pages, size_t bytes); /* NULL is fine */
 
+/* CF_NO_MEMORY unless `bytes` of address space could be had now. For calls of libraries that do not survive a failed
+ * malloc: leave them room. */
+cf_status cf_mem_room(size_t bytes);
+
 /* The n-th allocation from now on fails (n = 1 is the next); 0 switches this off. */
 void cf_mem_fail_at(long n);
 

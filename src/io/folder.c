@@ -119,7 +119,7 @@ cf_status cf_folder_numbers(const char *path, const char *word, const char *ext,
 }
 
 typedef struct census {
-  bool yaml, metrics, log;
+  bool yaml, metrics;
   int frames, checkpoints, others;
 } census;
 
@@ -135,11 +135,10 @@ static void visit_census(void *context, const char *name) {
     ++c->frames;
   else if (kind == CF_FILE_CHECKPOINT)
     ++c->checkpoints;
-  else if (kind == CF_FILE_RUN)
-    c->log = true;
 }
 
-/* "run.yaml, metrics.csv, 24 frame files, 2 checkpoints"; "" if there is no run. */
+/* "run.yaml, metrics.csv, 24 frame files, 2 checkpoints"; "" if there is no run (a log alone is what a run leaves that
+ * was killed before it began). */
 static void census_sentence(const census *c, char *text, const size_t size) {
   char frames[48] = "", checkpoints[48] = "";
   if (c->frames > 0)
@@ -150,7 +149,6 @@ static void census_sentence(const census *c, char *text, const size_t size) {
   char all[256];
   snprintf(all, sizeof all, "%s%s%s%s", c->yaml ? ", run.yaml" : "", c->metrics ? ", metrics.csv" : "",
            frames, checkpoints);
-  if (all[0] == '\0' && c->log) snprintf(all, sizeof all, ", a log");
   snprintf(text, size, "%s", all[0] == '\0' ? "" : all + 2);
 }
 
@@ -206,23 +204,36 @@ cf_status cf_folder_make(const char *path) {
   }
 }
 
+/* Whether `path` is still the name of the open file: a run that ends takes its lock's name away. */
+static bool is_name_of(const char *path, const int file) {
+  struct stat here, there;
+  return stat(path, &here) == 0 && fstat(file, &there) == 0 && here.st_ino == there.st_ino &&
+         here.st_dev == there.st_dev;
+}
+
 static cf_status take_lock(cf_folder *f) {
   cf_path file;
-  CF_TRY(cf_path_make(&file, "%s/.lock", f->path.text));
-  f->lock = open(file.text, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (f->lock < 0) return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", file.text, strerror(errno));
   char owner[32] = "";
-  if (flock(f->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    if (pread(f->lock, owner, sizeof owner - 1, 0) < 0) owner[0] = '\0';
-    owner[strcspn(owner, "\n")] = '\0';
-    return cf_fail(CF_CANNOT_WRITE,
-                   "%s: another run is writing this folder%s%s: wait for it, or choose another with -o",
-                   f->path.text, owner[0] != '\0' ? ", process " : "", owner);
+  CF_TRY(cf_path_make(&file, "%s/.lock", f->path.text));
+  for (;;) {
+    f->lock = open(file.text, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (f->lock < 0) return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", file.text, strerror(errno));
+    if (flock(f->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) break;
+    if (is_name_of(file.text, f->lock)) {
+      const int length = snprintf(owner, sizeof owner, "%ld\n", (long)getpid());
+      if (ftruncate(f->lock, 0) != 0 || pwrite(f->lock, owner, (size_t)length, 0) != length)
+        errno = 0; /* only a hint */
+      return CF_OK;
+    }
+    close(f->lock);
   }
-  const int length = snprintf(owner, sizeof owner, "%ld\n", (long)getpid());
-  if (ftruncate(f->lock, 0) != 0 || pwrite(f->lock, owner, (size_t)length, 0) != length)
-    errno = 0; /* only a hint */
-  return CF_OK;
+  if (pread(f->lock, owner, sizeof owner - 1, 0) < 0) owner[0] = '\0';
+  owner[strcspn(owner, "\n")] = '\0';
+  close(f->lock);
+  f->lock = -1; /* not ours: its name stays */
+  return cf_fail(CF_CANNOT_WRITE,
+                 "%s: another run is writing this folder%s%s: wait for it, or choose another with -o",
+                 f->path.text, owner[0] != '\0' ? ", process " : "", owner);
 }
 
 static cf_status open_log(cf_folder *f) {
@@ -291,9 +302,13 @@ cf_status cf_folder_open(cf_folder *f, const char *path) {
 }
 
 void cf_folder_close(cf_folder *f) {
+  cf_path lock;
   if (f->path.text[0] == '\0') return;
   if (f->log >= 0) close(f->log);
-  if (f->lock >= 0) close(f->lock);
+  if (f->lock >= 0) {
+    if (cf_path_make(&lock, "%s/.lock", f->path.text) == CF_OK) unlink(lock.text);
+    close(f->lock);
+  }
   *f = (cf_folder){.lock = -1, .log = -1};
 }
 

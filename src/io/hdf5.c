@@ -60,8 +60,12 @@ static hid_t access_list(void) {
   return list;
 }
 
+/* HDF5 crashes where an allocation of its own fails: it starts with room for all it takes. */
+#define HDF5_ROOM ((size_t)16 << 20)
+
 cf_status cf_hdf5_create(cf_hdf5 *h, const char *path, const size_t head) {
   *h = (cf_hdf5){.file = -1, .writing = true};
+  CF_TRY(cf_mem_room(HDF5_ROOM));
   CF_TRY(cf_draft_begin(&h->draft, path));
   enter(h);
   const hid_t access = access_list(), creation = H5Pcreate(H5P_FILE_CREATE);
@@ -82,6 +86,7 @@ cf_status cf_hdf5_create(cf_hdf5 *h, const char *path, const size_t head) {
 
 cf_status cf_hdf5_open(cf_hdf5 *h, const char *path) {
   *h = (cf_hdf5){.file = -1};
+  CF_TRY(cf_mem_room(HDF5_ROOM));
   CF_TRY(cf_path_make(&h->draft.path, "%s", path));
   FILE *file = fopen(path, "rbe"); /* for the system's own words */
   if (file == NULL) return cf_fail(CF_BAD_FILE, "%s: cannot be opened: %s", path, strerror(errno));

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/threads.h"
 
 static cf_status register_clock(cf_sim *sim) {
   CF_TRY(cf_registry_add_numbers(&sim->registry, "time", "s", &sim->time, 1));
@@ -64,6 +65,7 @@ static void destroy_shown(cf_sim *sim) {
 static cf_status create(cf_sim *sim, const int threads) {
   const cf_scene *scene = sim->scene;
   int cells[3] = {1, 1, 1};
+  CF_TRY(cf_threads_start(threads));
   for (int a = 0; a < scene->dim; ++a) cells[a] = (int)scene->domain.cells.value[a];
   CF_TRY(cf_grid_init(&sim->grid, scene->dim, cells, scene->spacing,
                       scene->domain.origin.count > 0 ? scene->domain.origin.value : NULL));

@@ -25,12 +25,23 @@ static double group_limit(void) {
   return bytes;
 }
 
-double cf_space_machine(void) {
+/* What the plans of models count for the program and its libraries, bytes. */
+#define PROGRAM 64e6
+
+/* What `ulimit -v` leaves for a run, the program that is there already included. */
+static double address_space(void) {
   struct rlimit limit;
-  double bytes = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGE_SIZE);
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    bytes = fmin(bytes, (double)limit.rlim_cur);
-  return fmin(bytes, group_limit());
+  double pages = 0;
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return INFINITY;
+  FILE *file = fopen("/proc/self/statm", "re");
+  if (file != NULL && fscanf(file, "%lf", &pages) != 1) pages = 0;
+  if (file != NULL) fclose(file);
+  return fmax((double)limit.rlim_cur - pages * (double)sysconf(_SC_PAGE_SIZE) + PROGRAM, 0);
+}
+
+double cf_space_machine(void) {
+  const double bytes = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGE_SIZE);
+  return fmin(fmin(bytes, address_space()), group_limit());
 }
 
 void cf_space_bytes(const double bytes, char text[32]) {

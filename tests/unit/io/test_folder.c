@@ -80,10 +80,9 @@ static void a_folder_with_a_run_is_refused_without_force(void **state) {
 }
 
 static void any_trace_of_a_run_counts(void **state) {
-  static const char *const traces[] = {"metrics.csv", "checkpoint_000001.h5", "particles_000000.vtkhdf",
-                                       "log.txt"};
+  static const char *const traces[] = {"metrics.csv", "checkpoint_000001.h5", "particles_000000.vtkhdf"};
   (void)state;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 3; ++i) {
     cf_folder f;
     assert_int_equal(cf_folder_create(&f, run.text, true), CF_OK);
     cf_folder_close(&f);
@@ -92,6 +91,18 @@ static void any_trace_of_a_run_counts(void **state) {
     unlink(log.text);
     put(traces[i]);
     assert_int_equal(cf_folder_create(&f, run.text, false), CF_BAD_USAGE);
+  }
+}
+
+/* What is left of a run that was killed before it began is in nobody's way. */
+static void a_log_alone_is_no_run_and_no_lock_stays(void **state) {
+  cf_folder f;
+  (void)state;
+  for (int turn = 0; turn < 2; ++turn) {
+    assert_int_equal(cf_folder_create(&f, run.text, false), CF_OK);
+    assert_true(is_there("log.txt") && is_there(".lock"));
+    cf_folder_close(&f);
+    assert_true(is_there("log.txt") && !is_there(".lock"));
   }
 }
 
@@ -239,6 +250,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(a_new_folder_is_made_with_those_above, setup, teardown),
       cmocka_unit_test_setup_teardown(a_folder_with_a_run_is_refused_without_force, setup, teardown),
+      cmocka_unit_test_setup_teardown(a_log_alone_is_no_run_and_no_lock_stays, setup, teardown),
       cmocka_unit_test_setup_teardown(any_trace_of_a_run_counts, setup, teardown),
       cmocka_unit_test_setup_teardown(two_runs_cannot_share_a_folder, setup, teardown),
       cmocka_unit_test_setup_teardown(a_killed_run_leaves_no_lock, setup, teardown),
