@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "base/real.h"
+#include "io/mesh.h"
 #include "render/colormap.h"
 
 enum { RANGE_FRAMES = 12 }; /* looked at for a film's range */
@@ -213,6 +214,13 @@ static cf_status load_surface(cf_showing *s, const int64_t number) {
   s->exhibit.attribute = s->field;
   const bool fields = has_file(s, "fields", "vtkhdf", number);
   if (fields) CF_TRY(read_head(s, number));
+  if (has_file(s, "mesh", "ply", number)) {
+    cf_path path;
+    CF_TRY(cf_path_make(&path, "%s/mesh_%06" PRId64 ".ply", s->folder, number));
+    CF_TRY(cf_mesh_create(&s->mesh));
+    s->exhibit.mesh = s->mesh;
+    return cf_mesh_read(s->mesh, path.text);
+  }
   if (!fields)
     return cf_fail(CF_BAD_FILE, "%s: frame %" PRId64 " has neither a mesh nor fields", s->folder, number);
   CF_TRY(add_field(s, s->surface, s->surface, size_of(&s->frame, s->surface)));

@@ -17,7 +17,7 @@
 
 enum { TILE = 64, COPIES_MOST = 64, SIDE_MOST = 8192, STEP_MOST = 8 };
 
-#define PIXEL_SIGMA 0.45f /* w is at least this, pixels */
+#define PIXEL_SIGMA 0.5f  /* w is at least this, pixels: tents of the smallest flakes add up to 1 on pixels */
 #define NEAREST     0.02f /* of the focus: flakes nearer than that are not seen */
 #define LETS_BY     0.2f  /* ice lets so much of what is behind through */
 #define GLINT_WIDTH 0.16f /* radians */
@@ -140,10 +140,12 @@ static bool sprite_make(sprite *s, const cf_cards *all, const int64_t i, const c
   widen(s, m, w);
   /* What the copies do not blur the texture must not show: its texels are as wide as the copies are apart. */
   const float texels = (float)p->side / (2 * (apart > 1 ? s->narrow : s->even)) * fmaxf(1, apart);
-  s->level =
-      (int)fminf(fmaxf(ceilf(log2f(fmaxf(texels, 1)) - (apart > 1 ? 0 : 0.6f)), 0), (float)(p->levels - 1));
+  /* Texels a little finer than pixels look sharper; of a flake of few texels they would miss pixels. */
+  const float finer = apart > 1 || 8 * texels > (float)p->side ? 0 : 0.6f;
+  s->level = (int)fminf(fmaxf(ceilf(log2f(fmaxf(texels, 1)) - finer), 0), (float)(p->levels - 1));
   for (s->step = 1; s->step < STEP_MOST && 2 * (float)s->step <= 0.6f * apart;) s->step *= 2;
-  for (int a = 0; a < 2; ++a) s->wide[a] = s->reach[a] + s->blur + 0.5f * fabsf(s->move[a]) + 1;
+  const float more = 1 + 1 / (float)(p->side >> s->level); /* a texel lies across the edge */
+  for (int a = 0; a < 2; ++a) s->wide[a] = more * s->reach[a] + s->blur + 0.5f * fabsf(s->move[a]) + 1;
   return s->x + s->wide[0] > 0 && s->y + s->wide[1] > 0 && s->x - s->wide[0] < (float)lens->width &&
          s->y - s->wide[1] < (float)lens->height && s->blur < (float)lens->height && s->faint > 0;
 }

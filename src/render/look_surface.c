@@ -180,7 +180,7 @@ cf_status cf_draw_mesh(const cf_look *look, const cf_exhibit *e, cf_canvas *c) {
 
 /* Dry gel is straw-coloured, wet gel blue; the band between moves. */
 static void colour_by_water(const cf_look *look, const body *b) {
-  static const cf_vec dry = {0.78f, 0.46f, 0.14f}, damp = {0.62f, 0.66f, 0.50f}, wet = {0.015f, 0.17f, 0.55f};
+  static const cf_vec dry = {0.66f, 0.34f, 0.08f}, damp = {0.48f, 0.52f, 0.38f}, wet = {0.008f, 0.11f, 0.42f};
   const cf_look l = with_range(look, b);
   for (int64_t i = 0; i < b->mesh->vertices; ++i) {
     const double part = l.high > l.low ? ((double)b->value[i] - l.low) / (l.high - l.low) : 0;
@@ -227,7 +227,7 @@ cf_status cf_draw_gel(const cf_look *look, const cf_exhibit *e, cf_canvas *c) {
 
 /* Without an attribute the height is what colours it: tips are young. */
 static void colour_coral(const cf_look *look, const body *b, const bool coloured) {
-  const cf_vec young = {0.92f, 0.74f, 0.56f};
+  const cf_vec young = {0.90f, 0.64f, 0.44f};
   const cf_vec old = cf_or_colour(look->colour, (cf_vec){0.55f, 0.16f, 0.10f});
   const cf_look l = with_range(look, b);
   const double tall = CF_MAX(b->high[2] - b->low[2], 1e-30);
@@ -241,7 +241,7 @@ static void colour_coral(const cf_look *look, const body *b, const bool coloured
 }
 
 cf_status cf_draw_coral(const cf_look *look, const cf_exhibit *e, cf_canvas *c) {
-  const cf_develop how = {.contrast = 1.22, .white = 3.5, .glow = 0.06, .vignette = 0.35};
+  const cf_develop how = {.contrast = 1.25, .white = 3.5, .glow = 0.05, .vignette = 0.45};
   const cf_vec water = cf_or_colour(look->background, (cf_vec){0.018f, 0.120f, 0.190f});
   cf_studio s = {.seed = 1, .bounce = 0.4f};
   float corners[4][3];
@@ -251,15 +251,15 @@ cf_status cf_draw_coral(const cf_look *look, const cf_exhibit *e, cf_canvas *c) 
   if (status == CF_OK) {
     colour_coral(look, &b, coloured);
     frame(look, &b, (cf_stand){.turn = 25, .rise = 14, .angle = 30}, &s);
-    cf_look_key(look, 35, 58, (cf_vec){2.5f, 2.4f, 2.05f}, 4, &s);
+    cf_look_key(look, 35, 58, (cf_vec){2.1f, 2.0f, 1.75f}, 4, &s);
     s.light[s.lights++] = (cf_light){cf_light_toward(-120, 35), {0.22f, 0.55f, 0.75f}, 0.4f};
     s.sky = (cf_sky){{0.42f, 0.72f, 0.85f}, {0.10f, 0.28f, 0.38f}, {0.04f, 0.07f, 0.08f}};
-    s.backdrop = (cf_backdrop){cf_vec_scale(1.15f, water), cf_vec_scale(0.5f, water), {0.5f, 0.2f}, 1.1f};
+    s.backdrop = (cf_backdrop){.middle = water, .edge = water}; /* no horizon: the floor ends in fog */
     double away = 0;
     for (int a = 0; a < 3; ++a)
       away += (s.camera.eye[a] - s.camera.aim[a]) * (s.camera.eye[a] - s.camera.aim[a]);
     const float fade = (float)(1 / sqrt(away));
-    s.haze = (cf_haze){{0.55f * fade, 0.30f * fade, 0.26f * fade}, water};
+    s.haze = (cf_haze){{0.40f * fade, 0.26f * fade, 0.23f * fade}, water};
     if (look->floor) {
       s.solid[s.solids] = cf_look_floor(b.low, b.high, floor_of(e, &b), 40, corners);
       s.solid[s.solids++].material = (cf_material){.tint = {0.30f, 0.27f, 0.21f}};
