@@ -55,6 +55,21 @@ CF_PARAM_TABLE(cf_scene_flow_inlet, CF_FLOW_INLET_TABLE)
 #define CF_PARAM_STRUCT cf_scene_flow
 CF_PARAM_TABLE(cf_scene_flow, CF_FLOW_TABLE)
 #undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_phase_anisotropy
+CF_PARAM_TABLE(cf_scene_phase_anisotropy, CF_PHASE_ANISOTROPY_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_phase_seed
+CF_PARAM_TABLE(cf_scene_phase_seed, CF_PHASE_SEED_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_phase_noise
+CF_PARAM_TABLE(cf_scene_phase_noise, CF_PHASE_NOISE_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_phase_window
+CF_PARAM_TABLE(cf_scene_phase_window, CF_PHASE_WINDOW_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_phase
+CF_PARAM_TABLE(cf_scene_phase, CF_PHASE_TABLE)
+#undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene_snowfall
 CF_PARAM_TABLE(cf_scene_snowfall, CF_SNOWFALL_TABLE)
 #undef CF_PARAM_STRUCT

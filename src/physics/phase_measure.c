@@ -5,6 +5,9 @@
 #include <math.h>
 
 #include "physics/phase_part.h"
+#include "stencil/arctan.h"
+
+#define PI 3.14159265358979323846
 
 static double sum_rows(const cf_phase *p) {
   return cf_sum_ordered(p->sums, cf_box_rows(&p->grid->box)) * cf_grid_volume(p->grid);
@@ -33,7 +36,7 @@ static double well(const cf_phase *p, const double e, const double T, const doub
   const double bump = e * (1 - e);
   if (p->p.karma_rappel)
     return bump * bump + 8 * p->p.coupling * T * e * e * e * (1.0 / 3 + e * (-1.0 / 2 + e / 5));
-  const double psi = -p->p.alpha / acos(-1) * atan(p->p.gamma * beta * T);
+  const double psi = -p->p.alpha / PI * (double)cf_arctan((cf_real)(p->p.gamma * beta * T));
   return bump * bump / 4 - psi * e * e * (0.5 - e / 3);
 }
 
