@@ -55,6 +55,18 @@ CF_PARAM_TABLE(cf_scene_flow_inlet, CF_FLOW_INLET_TABLE)
 #define CF_PARAM_STRUCT cf_scene_flow
 CF_PARAM_TABLE(cf_scene_flow, CF_FLOW_TABLE)
 #undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_gel_body
+CF_PARAM_TABLE(cf_scene_gel_body, CF_GEL_BODY_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_gel_obstacle
+CF_PARAM_TABLE(cf_scene_gel_obstacle, CF_GEL_OBSTACLE_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_gel_water
+CF_PARAM_TABLE(cf_scene_gel_water, CF_GEL_WATER_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_gel
+CF_PARAM_TABLE(cf_scene_gel, CF_GEL_TABLE)
+#undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene_phase_anisotropy
 CF_PARAM_TABLE(cf_scene_phase_anisotropy, CF_PHASE_ANISOTROPY_TABLE)
 #undef CF_PARAM_STRUCT

@@ -22,13 +22,14 @@
 #include "base/status.h"
 #include "cattaneo.h"
 #include "model/flow_keys.h"
+#include "model/gel_keys.h"
 #include "model/phase_keys.h"
 #include "model/render_keys.h"
 #include "model/snowfall_keys.h"
 
 /* --- words: W(UPPER, as a scene writes it) ---------------------------------------------------- */
 
-#define CF_MODEL_WORDS(W) W(TRACER, tracer) W(FLOW, flow) W(PHASE, phase) W(SNOWFALL, snowfall)
+#define CF_MODEL_WORDS(W) W(TRACER, tracer) W(FLOW, flow) W(PHASE, phase) W(SNOWFALL, snowfall) W(GEL, gel)
 #define CF_SCHEME_WORDS(W) \
   W(DEFAULT, default) W(PAPER, paper) W(SDIRK2, sdirk2) W(LEAPFROG, leapfrog) W(WAVE, wave)
 #define CF_SWITCH_WORDS(W) W(OFF, off) W(ON, on)
@@ -228,9 +229,8 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(cattaneo, integer, CF_REQUIRED, "", "", "Version of the scene format: 1")                               \
   P(title, text, "", "", "", "A line about the scene")                                                      \
   P(model, word, CF_REQUIRED, "", CF_WORDS(CF_MODEL_WORDS),                                                 \
-    "What is computed: tracer (scalars in a given flow), flow (a fluid and what it carries), phase "        \
-    "(crystals), snowfall "                                                                                 \
-    "(flakes in the wind)")                                                                                 \
+    "What is computed: tracer (scalars in a given flow), flow (a fluid and what it carries), phase (crystals), snowfall "     \
+    "(flakes in the wind), gel (bodies that take up water and swell)")                                      \
   P(let, constants, CF_NONE, "", "",                                                                        \
     "Names for numbers, for use in expressions and wherever a number stands")                               \
   R(record, domain, cf_scene_domain, "The box and its cells")                                               \
@@ -243,6 +243,7 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
     "The flow, one expression in x, y, z, t an axis, evaluated at the faces; in model flow that at time 0") \
   R(list, sources, cf_scene_source, "What is added to fields, or holds them")                               \
   R(record, flow, cf_scene_flow, "The fluid, of model flow")                                                \
+  R(record, gel, cf_scene_gel, "Bodies that swell, of model gel")                                           \
   R(record, phase, cf_scene_phase, "The crystal, of model phase")                                           \
   R(record, snowfall, cf_scene_snowfall, "Flakes falling, of model snowfall")                               \
   R(record, solver, cf_scene_solver, "The linear solver")                                                   \

@@ -53,6 +53,8 @@ typedef struct cf_mpm_obstacle {
   double friction;
 } cf_mpm_obstacle;
 
+#define CF_MPM_OBSTACLES_MAX 64
+
 typedef struct cf_mpm_params {
   int materials, obstacles;
   const cf_mpm_material *material;

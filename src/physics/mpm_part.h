@@ -101,8 +101,6 @@ cf_status cf_mpm_implicit(cf_mpm *m, double dt, cf_solve_report *report);
 void cf_mpm_collide(const cf_mpm *m, const cf_pose *pose, double t, const double place[3], double v[3],
                     double normal[3], int *held);
 
-#define CF_MPM_OBSTACLES_MAX 64
-
 #define CF_MPM_BY_DIM(name, dim, ...) \
   do {                                \
     if ((dim) == 3)                   \

@@ -165,7 +165,7 @@ static held_sum held_around(const cf_poro *w, const ptrdiff_t p) {
   for (int a = 0; a < box->dim; ++a)
     for (int side = -1; side <= 1; side += 2) {
       const ptrdiff_t q = p + side * box->stride[a];
-      if (kind[q] <= CF_PORO_FREE) continue;
+      if (kind[q] < CF_PORO_HELD_SURFACE) continue;
       const double kappa = cf_poro_to_held(w, p, q);
       sum.conductance += kappa, sum.value += kappa * (double)w->value.at[q];
     }

@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Material points without water moving between them: what is conserved, free swelling and the frequency of a bar
+ * against closed forms, laws, transfers, obstacles, and the same bits for any number of threads.
+ */
+/* also in single precision */
+#include <stdlib.h>
+
+#include "base/real.h"
+#include "gel_case.h"
+#include "reference.h"
+
+static const double round_off = 40 * CF_REAL_EPSILON;
+
+static void blob(gel_case *g, const int dim, const int per, const double jitter, const cf_mpm_params *p) {
+  const int n = 32;
+  const double h = 1.0 / n, w = dim == 3 ? 5 * h : 8 * h;
+  const double low[3] = {0.31, 0.31, 0.31}, high[3] = {0.31 + w, 0.31 + w, 0.31 + w};
+  OK(cf_grid_init(&g->grid, dim, (int[]){n, n, n}, h, NULL));
+  gel_fill(g, low, high, per, jitter);
+  gel_start(g, p);
+}
+
+/* A rotation, a shear and a shift, all at once. */
+static void set_moving(const gel_case *g) {
+  const int dim = g->grid.box.dim;
+  for (int64_t i = 0; i < g->set->count; ++i) {
+    const double x = (double)gel_at(g, 0, 0)[i] - 0.4, y = (double)gel_at(g, 0, 1)[i] - 0.4;
+    gel_at(g, g->at.velocity, 0)[i] = (cf_real)(0.3 - 2 * y + 0.5 * x);
+    gel_at(g, g->at.velocity, 1)[i] = (cf_real)(2 * x - 0.1);
+    if (dim == 3) gel_at(g, g->at.velocity, 2)[i] = (cf_real)(0.2 + y);
+    gel_at(g, g->at.affine, 1)[i] = -2, gel_at(g, g->at.affine, dim)[i] = 2;
+    gel_at(g, g->at.water, 0)[i] = (cf_real)(0.2 * (double)gel_at(g, g->at.volume, 0)[i] * (1 + sin(20 * x)));
+  }
+}
+
+static void momenta_are_kept(const int dim, const double flip, const double angular_tolerance) {
+  gel_case g = {
+      .material = {{.mu = 16, .lambda = 24, .density = 3, .water = 0.7, .swelling = 10, GEL_ELASTIC}}};
+  blob(&g, dim, 2, 0.3, &(cf_mpm_params){.flip = flip});
+  set_moving(&g);
+  const cf_mpm_sums first = cf_mpm_sums_of(g.mpm);
+  for (int s = 0; s < 100; ++s) gel_step(&g, 0, 2e-3);
+  const cf_mpm_sums last = cf_mpm_sums_of(g.mpm);
+  const double size = sqrt(2 * first.kinetic * first.mass), grow = sqrt(100.0);
+  for (int a = 0; a < 3; ++a) {
+    CLOSE(last.momentum[a], first.momentum[a], grow * round_off * size);
+    CLOSE(last.angular[a], first.angular[a], grow * round_off * size + angular_tolerance * size * 0.1);
+  }
+  CLOSE(last.water, first.water, grow * round_off * first.water);
+  assert_true(fabs(last.volume / first.volume - 1) > 1e-3); /* something happened */
+  gel_end(&g);
+}
+
+static void apic_keeps_momentum_and_angular_momentum(void **state) {
+  (void)state;
+  momenta_are_kept(2, -1, 0);
+  momenta_are_kept(3, -1, 0);
+}
+
+static void flip_keeps_momentum(void **state) {
+  (void)state;
+  momenta_are_kept(2, 0.95, 10);
+  momenta_are_kept(3, 0.95, 10);
+}
+
+/* Free swelling: 2 mu (s - 1) s + lambda (s^d - 1) s^d = chi S, at the capacity of the swollen body. */
+static void free_swelling_is_that_of_the_closed_form(void **state) {
+  (void)state;
+  table t = table_read("swelling.csv");
+  for (int r = 0; r < t.rows; ++r) {
+    const int dim = (int)table_at(&t, r, "d");
+    const double chi = table_at(&t, r, "chi_S"), J = table_at(&t, r, "J");
+    if (dim == 3 && chi != 4) continue;
+    gel_case g = {.material = {{.mu = table_at(&t, r, "mu"),
+                                .lambda = table_at(&t, r, "lambda"),
+                                .density = 1,
+                                .water = 0.7,
+                                .swelling = chi,
+                                GEL_ELASTIC}}};
+    blob(&g, dim, 2, 0.3, &(cf_mpm_params){.flip = -1, .damping = 20});
+    for (int s = 0; s < 500; ++s) { /* S = 1 whatever J is */
+      cf_real *c = gel_at(&g, g.at.water, 0);
+      const cf_real *V = gel_at(&g, g.at.volume, 0);
+      cf_real *J_of = malloc(sizeof *J_of * (size_t)g.set->count);
+      cf_mpm_derive(g.mpm, NULL, J_of, NULL);
+      for (int64_t i = 0; i < g.set->count; ++i) c[i] = (cf_real)0.7 * V[i] * J_of[i];
+      free(J_of);
+      gel_step(&g, 0, 0.35 * g.grid.h / sqrt(56 + chi));
+    }
+    const cf_mpm_sums sums = cf_mpm_sums_of(g.mpm);
+    const double V0 = (double)gel_at(&g, g.at.volume, 0)[0] * (double)g.set->count;
+    CLOSE(sums.volume / V0, J, 1e-4 * (chi > 4 ? 2 : 1));
+    gel_end(&g);
+  }
+  table_free(&t);
+}
+
+/* A bar between slippery walls, fixed at one end: f = sqrt(M/rho)/(4 L). */
+static void bar_swings_at_its_frequency(void **state) {
+  (void)state;
+  table t = table_read("elastic_bar.csv");
+  const double rho = table_at(&t, 0, "rho"), f = table_at(&t, 0, "f_confined"), c = table_at(&t, 0, "c_p");
+  const int n = 48;
+  const double h = 1.0 / n, low[3] = {8 * h, 8 * h, 0}, high[3] = {low[0] + 1, 28 * h, 0};
+  gel_case g = {.material = {{.mu = table_at(&t, 0, "mu"),
+                              .lambda = table_at(&t, 0, "lambda"),
+                              .density = rho,
+                              .water = 0.7,
+                              GEL_ELASTIC}}};
+  const cf_shape wall[3] = {cf_shape_plane((double[3]){low[0], 0, 0}, (double[3]){1, 0, 0}),
+                            cf_shape_plane((double[3]){0, low[1], 0}, (double[3]){0, 1, 0}),
+                            cf_shape_plane((double[3]){0, high[1], 0}, (double[3]){0, -1, 0})};
+  const cf_mpm_obstacle walls[3] = {{.shape = &wall[0], .contact = CF_MPM_STICKY},
+                                    {.shape = &wall[1], .contact = CF_MPM_SLIP},
+                                    {.shape = &wall[2], .contact = CF_MPM_SLIP}};
+  OK(cf_grid_init(&g.grid, 2, (int[]){n + 24, 40, 1}, h, NULL));
+  gel_fill(&g, low, high, 2, 0);
+  gel_start(&g, &(cf_mpm_params){.flip = -1, .obstacles = 3, .obstacle = walls});
+  for (int64_t i = 0; i < g.set->count; ++i)
+    gel_at(&g, g.at.velocity, 0)[i] =
+        (cf_real)(1e-2 * sin(acos(-1) / 2 * ((double)gel_at(&g, 0, 0)[i] - low[0])));
+  const double dt = 0.4 * h / c;
+  double before = 1, crossing[2] = {0, 0};
+  for (int s = 0, found = 0; found < 2 && s < 2000; ++s) {
+    gel_step(&g, 0, dt);
+    const double now = cf_mpm_sums_of(g.mpm).momentum[0];
+    if (now * before < 0 && s > 0) crossing[found++] = dt * (s + now / (before - now));
+    before = now;
+  }
+  CLOSE(0.5 / (crossing[1] - crossing[0]) / f, 1, 0.02);
+  gel_end(&g);
+  table_free(&t);
+}
+
+/* The stress of a turned body is the turned stress: T(Q F) = Q T(F) Q^T. */
+static void rotation_leaves_stress_alone(void **state) {
+  (void)state;
+  for (int law = 0; law < 2; ++law) {
+    gel_case g = {.material = {{.law = law ? CF_MPM_NEO_HOOKEAN : CF_MPM_COROTATED,
+                                .mu = 16,
+                                .lambda = 24,
+                                .density = 1,
+                                .water = 0.7,
+                                .swelling = 5,
+                                GEL_ELASTIC}}};
+    blob(&g, 2, 1, 0, &(cf_mpm_params){.flip = -1});
+    const double F[4] = {1.2, 0.3, -0.1, 0.9}, c = cos(1.1), s = sin(1.1), Q[4] = {c, -s, s, c};
+    for (int k = 0; k < 4; ++k) {
+      gel_at(&g, g.at.deformation, k)[0] = (cf_real)F[k];
+      gel_at(&g, g.at.deformation, k)[1] =
+          (cf_real)(Q[k / 2 * 2] * F[k % 2] + Q[k / 2 * 2 + 1] * F[2 + k % 2]);
+    }
+    for (int i = 0; i < 2; ++i) gel_at(&g, g.at.water, 0)[i] = (cf_real)0.3 * gel_at(&g, g.at.volume, 0)[i];
+    cf_real T[4][2048], *stress[4] = {T[0], T[1], T[2], T[3]};
+    assert_true(g.set->count <= 2048);
+    cf_mpm_derive(g.mpm, NULL, NULL, stress);
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) {
+        double turned = 0;
+        for (int a = 0; a < 2; ++a)
+          for (int b = 0; b < 2; ++b) turned += Q[2 * i + a] * (double)T[2 * a + b][0] * Q[2 * j + b];
+        CLOSE(T[2 * i + j][1], turned, 400 * round_off);
+      }
+    gel_end(&g);
+  }
+}
+
+/* A block thrown at a floor: never far below it, and at rest in the end. */
+static void dropped_block_comes_to_rest(void **state) {
+  (void)state;
+  gel_case g = {.material = {{.mu = 60, .lambda = 90, .density = 3, .water = 0.7, GEL_ELASTIC}}};
+  const cf_shape floor = cf_shape_plane((double[3]){0, 0.25, 0}, (double[3]){0, 1, 0});
+  const cf_mpm_obstacle below = {.shape = &floor, .contact = CF_MPM_SEPARATE, .friction = 0.3};
+  blob(&g, 2, 2, 0.2,
+       &(cf_mpm_params){.flip = -1, .obstacles = 1, .obstacle = &below, .gravity = {0, -5, 0}, .damping = 1});
+  for (int64_t i = 0; i < g.set->count; ++i) gel_at(&g, g.at.velocity, 0)[i] = (cf_real)0.2;
+  double highest = 0;
+  for (int s = 0; s < 4000; ++s) {
+    gel_step(&g, 0, 1.5e-3);
+    if (s == 2000) highest = cf_mpm_sums_of(g.mpm).kinetic;
+  }
+  const cf_mpm_sums end = cf_mpm_sums_of(g.mpm);
+  BELOW(end.kinetic, 1e-4 * end.mass);
+  assert_true(highest >= end.kinetic * 0.5);
+  double lowest = 1;
+  for (int64_t i = 0; i < g.set->count; ++i) lowest = CF_MIN(lowest, (double)gel_at(&g, 0, 1)[i]);
+  BELOW(fabs(lowest - 0.25), 1.0 / 32);
+  gel_end(&g);
+}
+
+/* The implicit step at a small dt is the explicit one, and stands steps far beyond the explicit limit. */
+static void semi_implicit_step_agrees_and_is_stable(void **state) {
+  (void)state;
+  for (int law = 0; law < 2; ++law) {
+    double energy[2];
+    for (int implicit = 0; implicit < 2; ++implicit) {
+      gel_case g = {.material = {{.law = law ? CF_MPM_NEO_HOOKEAN : CF_MPM_COROTATED,
+                                  .mu = 16,
+                                  .lambda = 24,
+                                  .density = 3,
+                                  .water = 0.7,
+                                  .swelling = 5,
+                                  GEL_ELASTIC}}};
+      blob(&g, 2, 2, 0.2, &(cf_mpm_params){.flip = -1, .implicitness = implicit, .solver = {1e-5, 200}});
+      set_moving(&g);
+      for (int s = 0; s < 100; ++s) gel_step(&g, 0, 2e-4);
+      energy[implicit] = cf_mpm_sums_of(g.mpm).kinetic;
+      const double before = energy[implicit];
+      for (int s = 0; s < 20 && implicit; ++s) gel_step(&g, 0, 2e-2); /* five times the explicit limit */
+      if (implicit) BELOW(cf_mpm_sums_of(g.mpm).kinetic, 1.5 * before);
+      gel_end(&g);
+    }
+    CLOSE(energy[1] / energy[0], 1, 6e-3);
+  }
+}
+
+/* Stretched beyond its limit a body keeps stretches within it, and the total volume. */
+static void plastic_stretches_stay_within_their_limits(void **state) {
+  (void)state;
+  for (int dim = 2; dim <= 3; ++dim) {
+    gel_case g = {.material = {{.mu = 16,
+                                .lambda = 24,
+                                .density = 3,
+                                .water = 0.7,
+                                .stretch = 0.02,
+                                .compression = 0.05,
+                                .hardening = 2}}};
+    blob(&g, dim, 2, 0.2, &(cf_mpm_params){.flip = -1});
+    for (int64_t i = 0; i < g.set->count; ++i)
+      gel_at(&g, g.at.affine, 0)[i] = 3, gel_at(&g, g.at.velocity, 0)[i] =
+                                             (cf_real)(3 * ((double)gel_at(&g, 0, 0)[i] - 0.43));
+    for (int s = 0; s < 40; ++s) gel_step(&g, 0, 1e-3);
+    const cf_mpm_sums end = cf_mpm_sums_of(g.mpm);
+    assert_true(end.jacobian_max > 1.04);
+    double most = 0;
+    for (int64_t i = 0; i < g.set->count; ++i) {
+      double norm = 0;
+      for (int k = 0; k < dim * dim; ++k) norm += pow((double)gel_at(&g, g.at.deformation, k)[i], 2);
+      most = CF_MAX(most, norm);
+    }
+    BELOW(most, dim * 1.02 * 1.02 + 1e-5);
+    gel_end(&g);
+  }
+}
+
+static void threads_do_not_change_a_bit(void **state) {
+  (void)state;
+  gel_case g[2];
+  for (int t = 0; t < 2; ++t) {
+    g[t] = (gel_case){
+        .material = {{.mu = 16, .lambda = 24, .density = 3, .water = 0.7, .swelling = 10, GEL_ELASTIC}}};
+    blob(&g[t], 3, 2, 0.3, &(cf_mpm_params){.flip = -1, .implicitness = 1, .solver = {1e-6, 50}});
+    g[t].grid.threads = 1 + 2 * t;
+    set_moving(&g[t]);
+    for (int s = 0; s < 5; ++s) gel_step(&g[t], 0, 2e-3);
+    cf_mpm_filter(g[t].mpm, 0.3);
+  }
+  for (int a = 0; a < g[0].set->attributes; ++a)
+    for (int c = 0; c < g[0].set->attribute[a].components; ++c)
+      assert_memory_equal(gel_at(&g[0], a, c), gel_at(&g[1], a, c),
+                          sizeof(cf_real) * (size_t)g[0].set->count);
+  for (int t = 0; t < 2; ++t) gel_end(&g[t]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(apic_keeps_momentum_and_angular_momentum),
+      cmocka_unit_test(flip_keeps_momentum),
+      cmocka_unit_test(free_swelling_is_that_of_the_closed_form),
+      cmocka_unit_test(bar_swings_at_its_frequency),
+      cmocka_unit_test(rotation_leaves_stress_alone),
+      cmocka_unit_test(dropped_block_comes_to_rest),
+      cmocka_unit_test(semi_implicit_step_agrees_and_is_stable),
+      cmocka_unit_test(plastic_stretches_stay_within_their_limits),
+      cmocka_unit_test(threads_do_not_change_a_bit),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
