@@ -21,18 +21,12 @@ static bool has_format(const cf_sim *sim, const int format) {
 
 static bool is_drawable(const cf_entry *e) { return e->kind == CF_KIND_CELL || e->kind == CF_KIND_FACE; }
 
+/* What the picture shows: the field that the scene names, or the first one there is where that has no picture of its
+ * own (particles). NULL: there is nothing to draw. */
 static const cf_entry *shown_field(const cf_sim *sim) {
-  return cf_registry_find(&sim->shown, sim->scene->output.preview.field);
-}
-
-/* "phi, q, velocity": what could be drawn. */
-static void list_drawable(const cf_sim *sim, char *text, const size_t size) {
-  size_t used = 0;
-  text[0] = '\0';
-  for (int e = 0; e < sim->shown.count && used < size; ++e)
-    if (is_drawable(&sim->shown.entry[e]))
-      used +=
-          (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", sim->shown.entry[e].name);
+  const cf_entry *e = cf_registry_find(&sim->shown, sim->scene->output.preview.field);
+  for (int i = 0; i < sim->shown.count && (e == NULL || !is_drawable(e)); ++i) e = &sim->shown.entry[i];
+  return e != NULL && is_drawable(e) ? e : NULL;
 }
 
 /* Passes the latest sentence on, at a key of the scene. */
@@ -67,22 +61,22 @@ static cf_status check_formats(const cf_sim *sim) {
   return CF_OK;
 }
 
+static cf_status check_preview(const cf_sim *sim) {
+  const cf_scene_preview *preview = &sim->scene->output.preview;
+  const char *name = preview->field;
+  cf_colormap map;
+  if (!has_format(sim, CF_SCENE_FORMAT_PNG)) return CF_OK;
+  if (cf_choice_check(&(cf_choice){1, &name}, &sim->shown) != CF_OK)
+    return fail_at(sim->scene, "output.preview.field");
+  if (preview->map[0] != '\0' && cf_colormap_find(preview->map, &map) != CF_OK)
+    return fail_at(sim->scene, "output.preview.map");
+  return CF_OK;
+}
+
 cf_status cf_output_check(const cf_sim *sim) {
-  const cf_scene *scene = sim->scene;
-  const cf_scene_preview *preview = &scene->output.preview;
-  char known[512];
   CF_TRY(check_fields(sim));
   CF_TRY(check_formats(sim));
-  const cf_entry *shown = shown_field(sim);
-  if (shown == NULL || !is_drawable(shown)) {
-    list_drawable(sim, known, sizeof known);
-    return cf_scene_fail_at(scene, "output.preview.field", "there is no field %s; there are %s",
-                            preview->field, known);
-  }
-  cf_colormap map;
-  if (preview->map[0] != '\0' && cf_colormap_find(preview->map, &map) != CF_OK)
-    return fail_at(scene, "output.preview.map");
-  return CF_OK;
+  return check_preview(sim);
 }
 
 /* |q| in cells, from the means of opposite faces. */
@@ -126,6 +120,7 @@ static cf_status draw_shown(const cf_sim *sim, const cf_entry *e, cf_canvas *can
 
 static cf_status write_picture(const cf_sim *sim, const char *folder) {
   const cf_entry *e = shown_field(sim);
+  if (e == NULL) return CF_OK;
   cf_canvas canvas;
   cf_path path;
   char time[40];

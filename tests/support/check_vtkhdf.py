@@ -57,7 +57,13 @@ def check_points(file):
         cells, ids = int(root[group]["NumberOfCells"][0]), int(root[group]["NumberOfConnectivityIds"][0])
         check(root[group]["Offsets"].shape == (cells + 1,), f"{group}: Offsets")
         check(root[group]["Connectivity"].shape == (ids,), f"{group}: Connectivity")
-        check(ids == (n if group == "Vertices" else 0), f"{group}: {ids} ids for {n} points")
+        if group == "Polygons" and cells > 0:
+            corner = root[group]["Connectivity"][...]
+            check(np.array_equal(root[group]["Offsets"][...], 3 * np.arange(cells + 1)), "not all polygons are triangles")
+            check(corner.min() >= 0 and corner.max() < n, "a triangle has a corner that is not there")
+        else:
+            surface = int(root["Polygons"]["NumberOfCells"][0]) > 0
+            check(ids == (n if group == "Vertices" and not surface else 0), f"{group}: {ids} ids for {n} points")
     shown = {name: array[...] for name, array in root["PointData"].items()}
     check(all(len(values) == n for values in shown.values()), "an attribute has another count than the points")
     return shown
@@ -92,7 +98,9 @@ def check_with_vtk(path, file, shown):
     else:
         points = vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() > 0 else np.zeros((0, 3))
         check(np.array_equal(points, root["Points"][...]), "points differ")
-        check(data.GetNumberOfVerts() == (1 if len(points) else 0), "vertices differ")
+        triangles = int(root["Polygons/NumberOfCells"][0])
+        check(data.GetNumberOfVerts() == (1 if len(points) and not triangles else 0), "vertices differ")
+        check(data.GetNumberOfPolys() == triangles, "triangles differ")
         arrays = data.GetPointData()
     for name, values in shown.items():
         array = arrays.GetArray(name)
@@ -128,7 +136,8 @@ def check_file(path):
         check(kind in ("ImageData", "PolyData"), f"Type {kind}")
         shown = check_image(file) if kind == "ImageData" else check_points(file)
         wanted = np.float64 if text(file.attrs["precision"]) == "double" else np.float32
-        check(all(values.dtype == wanted for values in shown.values()), "arrays are not in the precision of the state")
+        check(all(values.dtype == (np.int64 if name == "id" else wanted) for name, values in shown.items()),
+              "arrays are not in the precision of the state")
         check_no_stamps(file)
         check_series(path, file)
         return check_with_vtk(path, file, shown)

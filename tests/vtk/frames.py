@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Frames of real runs as other programs read them: frames.py PROGRAM CHECK FOLDER
 
-Runs a plane and a spatial scene and gives their frames to CHECK (check_vtkhdf.py), first with Debian's h5py, then in an
+Runs a plane and a spatial scene, and some snow, and gives their frames to CHECK (check_vtkhdf.py), first with Debian's h5py, then in an
 environment of its own with the current vtk wheel, which is kept in FOLDER. Where no package index is to be had the
 second half is left out, with a word; a machine with neither skips the test (exit code 77).
 """
@@ -11,6 +11,9 @@ import os
 import shutil
 import subprocess
 import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from make_atlas import make_atlas  # noqa: E402
 
 PLANE = """cattaneo: 1
 title: frames, plane
@@ -23,6 +26,15 @@ output: {formats: [vtkhdf]}
 """
 SPACE = PLANE.replace("plane", "space").replace("[1, 0.5]", "[1, 0.5, 0.75]").replace("[16, 8]", "[16, 8, 12]") \
     .replace("[-1, 2]", "[-1, 2, 3]").replace("2*y", "2*y - z").replace('["0", "0"]', '["0", "0", "0"]')
+# Particles, and a surface.
+SNOW = """cattaneo: 1
+title: frames, flakes
+model: snowfall
+domain: {size: [0.1, 0.1, 0.1], cells: [8, 8, 8]}
+time: {end: 0.01, dt: 0.005, frames: 100}
+snowfall: {atlas: ATLAS, flakes: 50}
+output: {formats: [vtkhdf, ply], fields: [flakes, ground]}
+"""
 
 
 def environment(folder):
@@ -53,14 +65,15 @@ def main():
     shutil.rmtree(scratch, ignore_errors=True)
     os.makedirs(scratch)
     frames = []
-    for name, scene in (("plane", PLANE), ("space", SPACE)):
+    snow = SNOW.replace("ATLAS", make_atlas(os.path.join(scratch, "atlas")))
+    for name, scene in (("plane", PLANE), ("space", SPACE), ("snow", snow)):
         path = os.path.join(scratch, name + ".yaml")
         with open(path, "w") as file:
             file.write(scene)
         out = os.path.join(scratch, name)
         subprocess.run([program, "run", path, "-o", out, "--progress", "none"], check=True, stdout=subprocess.DEVNULL)
-        frames += sorted(glob.glob(os.path.join(out, "fields_*.vtkhdf")))
-    assert len(frames) == 6, frames
+        frames += sorted(glob.glob(os.path.join(out, "*_*.vtkhdf")))
+    assert len(frames) == 3 + 3 + 2 * 3, frames  # of snow: flakes, ground, surface
     debian, python = with_h5py(), environment(os.path.join(folder, "vtk-environment"))
     if debian is not None:
         subprocess.run([debian, check] + frames, check=True)
