@@ -8,6 +8,8 @@
 #   make test       the same, then every test but the long ones
 #   make test-long  every test
 #   make gallery    makes every picture of the examples and the README (hours; may be stopped and called again)
+#   make fuzz       readers under libFuzzer (clang), FUZZ_SECONDS each: 3600
+#   make sanitize   every test but the long ones with the address, undefined-behaviour and thread sanitizers
 #   make format     puts the C files into the project's form (clang-format)
 #   make lint       what can be said about the sources without running them
 #   make clean      removes build/
@@ -18,7 +20,7 @@ BUILD ?= build
 JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
 CTEST  = ctest --test-dir $(BUILD) --output-on-failure -j$(JOBS)
 
-.PHONY: all demo gallery test test-long format lint clean setup setup-tests configure programs
+.PHONY: all demo gallery test test-long fuzz sanitize format lint clean setup setup-tests configure programs
 
 all: programs
 
@@ -58,6 +60,19 @@ test-long: setup-tests
 	@$(MAKE) --no-print-directory configure
 	@cmake --build $(BUILD) --parallel $(JOBS)
 	@$(CTEST)
+
+FUZZ_SECONDS ?= 3600
+
+fuzz: setup-tests
+	@cmake --preset fuzz -DCATTANEO_FUZZ_SECONDS=$(FUZZ_SECONDS)
+	@cmake --build --preset fuzz --parallel $(JOBS)
+	@ctest --preset fuzz -j$(JOBS)
+
+sanitize: setup-tests
+	@for preset in asan-ubsan tsan; do \
+	  cmake --preset $$preset && cmake --build --preset $$preset --parallel $(JOBS) && \
+	  ctest --preset $$preset -j$(JOBS) --label-exclude long || exit 1; \
+	done
 
 # --- sources ----------------------------------------------------------------------------------------------
 

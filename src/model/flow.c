@@ -151,6 +151,9 @@ static cf_status flow_step(void *model, const double t, const double dt, cf_step
   cf_flow *m = model;
   const bool sticky = m->viscosity != NULL;
   double clock = cf_stage_clock();
+  if (m->walls_in_time) CF_TRY(cf_flow_walls_at(m, t)); /* a resumed run knows those of time 0 only */
+  if (m->walls_in_time)
+    CF_TRY(cf_flow_walls_at(m, t)); /* as they were at the end of the last step, or at a resume */
   CF_TRY(find_middle(m, dt));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
   if (!sticky) CF_TRY(push_half(m, t, dt));
@@ -183,7 +186,7 @@ static bool flow_describe(const void *model, const int line, char *text, const s
 }
 
 static const char *const flow_keys[] = {"flow",     "diffusion", "advection", "fields",
-                                        "velocity", "sources",   "obstacles", NULL};
+                                        "velocity", "sources",   NULL};
 
 const cf_model cf_model_flow = {
     .name = "flow",

@@ -150,6 +150,17 @@ static cf_status make_step(cf_sim *sim, const double t, const double dt) {
   return CF_OK;
 }
 
+/* A solver that was given what is not finite knows no place: the state is looked at for one. */
+static cf_status find_not_finite(cf_sim *sim, const double dt) {
+  char why[CF_SENTENCE_MAX];
+  snprintf(why, sizeof why, "%s", cf_status_sentence());
+  sim->dt = dt;
+  ++sim->step;
+  CF_TRY(cf_sim_check_finite(sim));
+  return cf_fail(CF_NOT_FINITE, "%.700s, in step %lld from t = %g s with dt = %g s", why,
+                 (long long)sim->step, sim->time, dt);
+}
+
 /* One step, that ends at `until` at the latest. */
 static cf_status step(cf_sim *sim, const double until, bool *on_frame) {
   const double chosen =
@@ -161,7 +172,8 @@ static cf_status step(cf_sim *sim, const double until, bool *on_frame) {
   const double dt = lands ? left : wish;
   if (!(sim->time + dt > sim->time))
     return cf_fail(CF_FAILED, "the step of %g s is too short to move time on from t = %g s", dt, sim->time);
-  CF_TRY(make_step(sim, sim->time, dt));
+  const cf_status made = make_step(sim, sim->time, dt);
+  if (made != CF_OK) return made == CF_NOT_FINITE ? find_not_finite(sim, dt) : made;
   sim->time = lands ? stop : sim->time + dt;
   sim->dt = dt;
   ++sim->step;

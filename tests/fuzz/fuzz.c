@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One of the readers under libFuzzer: compiled once for each, with -DFUZZ_TARGET="scene".
+ */
+#include <string.h>
+
+#include "targets.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, const size_t size) {
+  for (const target *t = targets; t->name != NULL; ++t)
+    if (strcmp(t->name, FUZZ_TARGET) == 0) t->read(bytes, size);
+  return 0;
+}
