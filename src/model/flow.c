@@ -151,7 +151,6 @@ static cf_status flow_step(void *model, const double t, const double dt, cf_step
   cf_flow *m = model;
   const bool sticky = m->viscosity != NULL;
   double clock = cf_stage_clock();
-  if (m->walls_in_time) CF_TRY(cf_flow_walls_at(m, t)); /* a resumed run knows those of time 0 only */
   if (m->walls_in_time)
     CF_TRY(cf_flow_walls_at(m, t)); /* as they were at the end of the last step, or at a resume */
   CF_TRY(find_middle(m, dt));
