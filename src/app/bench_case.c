@@ -98,8 +98,7 @@ static cf_status remove_mean(const cf_grid *g, const cf_cell b) {
   return CF_OK;
 }
 
-/* Bytes of memory in use by this process; 0 where there is no telling. */
-static double resident_bytes(void) {
+double cf_bench_resident(void) {
   FILE *f = fopen("/proc/self/statm", "re");
   long whole = 0, resident = 0;
   if (f == NULL) return 0;
@@ -114,7 +113,7 @@ static cf_status system_make(cf_bench_system *s, const cf_bench_case *c) {
   CF_TRY(cf_cell_create(&s->b, &s->grid.box));
   CF_TRY(cf_bench_fill_side(c, &s->grid, s->b));
   if (wants_no_mean(c)) CF_TRY(remove_mean(&s->grid, s->b));
-  s->resident = resident_bytes();
+  s->resident = cf_bench_resident();
   CF_TRY(cf_cell_create(&s->x, &s->grid.box));
   const cf_walls walls = walls_of(c);
   CF_TRY(cf_helmholtz_create(&s->A, &s->grid, &walls, 0));
@@ -154,7 +153,7 @@ static cf_status time_solves(const cf_bench_system *s, const cf_bench_case *c, c
                              const double enough, cf_bench_result *result) {
   double seconds[TIMES_MAX], sum = 0, first;
   CF_TRY(cf_bench_system_solve(s, c, &result->report, &first));
-  result->bytes_per_cell = (resident_bytes() - s->resident) / (double)cf_box_cells(&s->grid.box);
+  result->bytes_per_cell = (cf_bench_resident() - s->resident) / (double)cf_box_cells(&s->grid.box);
   while (result->times < TIMES_MAX && (result->times < least || sum < enough)) {
     CF_TRY(cf_bench_system_solve(s, c, &result->report, &seconds[result->times]));
     sum += seconds[result->times++];

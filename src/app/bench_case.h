@@ -64,6 +64,9 @@ double cf_bench_least_bytes(const cf_bench_case *c, const cf_solve_report *repor
  * counted. CF_NO_MEMORY. */
 cf_status cf_bench_stream(int threads, double *bytes_per_second);
 
+/* Bytes of memory in use by this process; 0 where there is no telling. */
+double cf_bench_resident(void);
+
 double cf_bench_clock(bool own_time); /* s */
 
 /* Sorts v. */

@@ -217,8 +217,17 @@ static void add_step(cf_check *c, const numbers *n) {
                    name, cells, CELLS_A_STEP * h / n->c);
 }
 
-/* Levels of multigrid that the solver uses for a stage, from the solver itself. */
-static cf_status count_levels(const cf_scene *scene, const numbers *n, const double sigma, int *levels) {
+/* How the solver goes about a stage, from the solver itself, and why so. */
+static cf_status describe_solver(const cf_scene *scene, const numbers *n, const double sigma, char *text,
+                                 const size_t size) {
+  static const struct {
+    const char *method, *why;
+  } reason[] = {{"sor", "half sweeps alone, for diffusion adds little to the diagonal"},
+                {"multigrid", "cycles alone, for the coefficients are numbers"},
+                {"multigrid-pcg", "conjugate gradients around cycles"},
+                {"pcg", "conjugate gradients, for diffusion adds little to the diagonal"},
+                {"line", "elimination, for it is a line"},
+                {"direct", "elimination, for cells are few"}};
   cf_grid g;
   cf_helmholtz *A;
   int cells[3] = {1, 1, 1};
@@ -228,22 +237,24 @@ static cf_status count_levels(const cf_scene *scene, const numbers *n, const dou
   CF_TRY(cf_helmholtz_create(&A, &g, &n->field->walls.walls, (int)scene->solver.levels));
   const cf_status status = cf_helmholtz_set(A, &(cf_coefficients){.alpha = 1, .beta = sigma * h * h});
   const bool varies = n->k.least != n->k.largest || n->capacity.least != n->capacity.largest;
-  *levels = varies ? A->levels : A->depth;
+  const char *method = varies ? "multigrid-pcg" : cf_helmholtz_method(A), *why = "";
+  const int levels = varies ? A->levels : strcmp(method, "sor") == 0 ? 1 : A->depth;
+  for (size_t v = 0; v < sizeof reason / sizeof *reason; ++v)
+    if (strcmp(method, reason[v].method) == 0) why = reason[v].why;
+  snprintf(text, size, "sigma = %.3g, %d level%s of multigrid: %s", sigma, levels, levels == 1 ? "" : "s",
+           why);
   cf_helmholtz_destroy(A);
   return status;
 }
 
 static cf_status add_scheme(cf_check *c, const numbers *n) {
   char text[256];
-  int levels;
   const bool paper = n->plan.scheme == CF_DIFFUSE_PAPER;
   const double delta = (paper ? 1 : 1 - sqrt(0.5)) * n->dt, h = c->scene->spacing;
   const double sigma = cf_regime_sigma(cf_regime_stage(delta, n->d->tau, n->d->f_t), n->D, h);
   add(c, "scheme", n->plan.why);
   if (n->implicit && c->fits) {
-    CF_TRY(count_levels(c->scene, n, sigma, &levels));
-    snprintf(text, sizeof text, "sigma = %.3g, %d level%s of multigrid", sigma, levels,
-             levels == 1 ? "" : "s");
+    CF_TRY(describe_solver(c->scene, n, sigma, text, sizeof text));
     add(c, "solver", text);
   }
   snprintf(text, sizeof text, "%s%s",

@@ -15,6 +15,9 @@
 /* Up to this stiffness half sweeps alone are fewer operations, and fewer passes over memory, than cycles with coarse
  * levels: 32 of them, in one pass, do what 5 or 6 cycles do. */
 #define SWEEPS_ENOUGH 10
+/* The polynomials' bound holds for the error; a pass aims so much below what is asked of the residual, since a second
+ * pass costs more than a half sweep. */
+#define PASS_MARGIN 0.25
 /* What rounding leaves of the residual that a recursion started from; a new start is due well before. */
 #define RECURSION_FLOOR 5e-7
 #define RECURSION_TURN  2e-5
@@ -218,7 +221,7 @@ static bool iterate(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell
   if (f->depth > 1)
     cf_box_cycle(f, b, x, expected <= turn, it);
   else
-    cf_box_sweeps(f, b, x, 0.5 * sqrt(enough / it->rr), it);
+    cf_box_sweeps(f, b, x, PASS_MARGIN * sqrt(enough / it->rr), it);
   /* x may be coarser than what r can tell: in single precision, or next to a large lift. */
   const double rounding = CF_REAL_EPSILON * f->scale * lifted;
   const bool coarse = sizeof(cf_real) == sizeof(float) ||
