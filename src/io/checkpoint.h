@@ -29,7 +29,7 @@ cf_status cf_checkpoint_write_to(const char *path, const cf_registry *r, const c
 
 /* Reads everything into the registry; sets of particles get room for as many as there are. CF_BAD_FILE: the file is damaged, or does not fit (precision, shape, an entry missing or unknown), and says
  * what was expected and what was found; the state is as it was. */
-cf_status cf_checkpoint_read(const char *path, const cf_registry *r, const void *nothing);
+cf_status cf_checkpoint_read(const char *path, const cf_registry *r);
 
 /* Whether the file is whole. CF_BAD_FILE with a sentence that says what is wrong. */
 cf_status cf_checkpoint_check(const char *path);

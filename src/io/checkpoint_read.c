@@ -200,8 +200,7 @@ static cf_status take_over(cf_hdf5 *h, const cf_registry *r) {
   return CF_OK;
 }
 
-cf_status cf_checkpoint_read(const char *path, const cf_registry *r, const void *nothing) {
-  (void)nothing;
+cf_status cf_checkpoint_read(const char *path, const cf_registry *r) {
   cf_hdf5 h;
   CF_TRY(cf_head_check(path));
   CF_TRY(cf_hdf5_open(&h, path));

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -224,6 +225,16 @@ static cf_status say_state(report *r, cf_hdf5 *h) {
   return say_group(r, h, "/state", "", pow(spacing, (double)dim));
 }
 
+/* Where particles are, or the vertices of a surface, and its triangles. */
+static cf_status say_points(report *r, cf_hdf5 *h) {
+  const listing l = {.r = r, .group = "/VTKHDF", .list = true};
+  const listing triangles = {.r = r, .group = "/VTKHDF/Polygons", .prefix = "triangles/", .list = true};
+  cf_array shape;
+  CF_TRY(visit_array((void *)(uintptr_t)&l, h, "Points"));
+  CF_TRY(cf_hdf5_shape(h, "/VTKHDF/Polygons/Connectivity", &shape));
+  return shape.n[0] > 0 ? visit_array((void *)(uintptr_t)&triangles, h, "Connectivity") : CF_OK;
+}
+
 static cf_status say_frame(report *r, cf_hdf5 *h) {
   char type[32];
   int64_t dim, extent[6];
@@ -240,6 +251,7 @@ static cf_status say_frame(report *r, cf_hdf5 *h) {
   CF_TRY(say(r, "%s", columns));
   CF_TRY(say_group(r, h, "/VTKHDF/CellData", "", pow(spacing[0], (double)dim)));
   CF_TRY(say_group(r, h, "/faces", "", 1));
+  if (strcmp(type, "PolyData") == 0) CF_TRY(say_points(r, h));
   return say_group(r, h, "/VTKHDF/PointData", "", 1);
 }
 
@@ -287,18 +299,58 @@ static cf_status say_checkpoints(report *r, const char *path) {
   return s;
 }
 
+typedef struct search {
+  int64_t latest; /* number of the last frame, -1: none */
+  int files;      /* VTKHDF files of that frame */
+  cf_path file[8];
+  const char *folder;
+} search;
+
+static bool is_frame(const char *name, int64_t *number) {
+  const char *dot = strrchr(name, '.');
+  return dot != NULL && strcmp(dot, ".vtkhdf") == 0 && cf_file_kind_of(name, number) == CF_FILE_FRAME;
+}
+
+static void visit_latest(void *context, const char *name) {
+  search *s = context;
+  int64_t number;
+  if (is_frame(name, &number)) s->latest = CF_MAX(s->latest, number);
+}
+
+static void visit_files(void *context, const char *name) {
+  search *s = context;
+  int64_t number;
+  if (!is_frame(name, &number) || number != s->latest || s->files == 8) return;
+  if (cf_path_make(&s->file[s->files], "%s/%s", s->folder, name) == CF_OK) ++s->files;
+}
+
+static int compare_paths(const void *a, const void *b) {
+  return strcmp(((const cf_path *)a)->text, ((const cf_path *)b)->text);
+}
+
+/* How many frames there are of what the file shows. */
+static cf_status count_frames(const char *folder, const char *file, int *count) {
+  const char *name = strrchr(file, '/') + 1, *bar = strrchr(name, '_');
+  char word[CF_PATH_MAX];
+  int64_t *numbers;
+  snprintf(word, sizeof word, "%.*s", (int)(bar - name), name);
+  CF_TRY(cf_folder_numbers(folder, word, "vtkhdf", count, &numbers));
+  cf_free(numbers);
+  return CF_OK;
+}
+
+/* Frames, checkpoints, and what the last frame's files hold: fields, surface, particles. */
 static cf_status say_folder(report *r, const char *path) {
-  int count;
-  int64_t *frames;
-  cf_path last;
-  CF_TRY(cf_folder_numbers(path, "fields", "vtkhdf", &count, &frames));
-  cf_status s = say(r, "%s: the folder of a run\n  frames       %d\n", path, count);
-  if (s == CF_OK && count > 0)
-    s = cf_path_make(&last, "%s/fields_%06" PRId64 ".vtkhdf", path, frames[count - 1]);
-  cf_free(frames);
-  CF_TRY(s);
+  search s = {.latest = -1, .folder = path};
+  int frames = 0;
+  CF_TRY(cf_folder_each(path, visit_latest, &s));
+  CF_TRY(cf_folder_each(path, visit_files, &s));
+  qsort(s.file, (size_t)s.files, sizeof *s.file, compare_paths);
+  if (s.files > 0) CF_TRY(count_frames(path, s.file[0].text, &frames));
+  CF_TRY(say(r, "%s: the folder of a run\n  frames       %d\n", path, frames));
   CF_TRY(say_checkpoints(r, path));
-  return count > 0 ? say_file(r, last.text) : CF_OK;
+  for (int i = 0; i < s.files; ++i) CF_TRY(say_file(r, s.file[i].text));
+  return CF_OK;
 }
 
 cf_status cf_info_text(const char *path, char **text) {

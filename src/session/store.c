@@ -40,7 +40,7 @@ static cf_status check_scene(const cf_sim *sim, const char *path) {
 
 cf_status cf_sim_load(cf_sim *sim, const char *path) {
   CF_TRY(check_scene(sim, path));
-  CF_TRY(cf_checkpoint_read(path, &sim->registry, NULL));
+  CF_TRY(cf_checkpoint_read(path, &sim->registry));
   memset(&sim->report, 0, sizeof sim->report);
   sim->warning[0] = '\0';
   return cf_sim_restored(sim);

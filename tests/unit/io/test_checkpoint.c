@@ -70,7 +70,7 @@ static void checkpoint_restores_every_bit(void **state) {
   snapshot(c, after);
   assert_memory_not_equal(before, after, n);
   const cf_path path = case_path(c, "checkpoint_000012.h5");
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_OK);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_OK);
   assert_int_equal(snapshot(c, after), n);
   assert_memory_equal(before, after, n);
 }
@@ -102,13 +102,13 @@ static void every_flipped_bit_is_found_and_the_state_stays(void **state) {
   for (size_t i = 0; i < size; i += 13) {
     bytes[i] = (char)(bytes[i] ^ (1 << (i % 8)));
     assert_int_equal(cf_file_write(bad.text, bytes, size), CF_OK);
-    assert_int_equal(cf_checkpoint_read(bad.text, &c->registry, NULL), CF_BAD_FILE);
+    assert_int_equal(cf_checkpoint_read(bad.text, &c->registry), CF_BAD_FILE);
     assert_says("bad.h5: ");
     bytes[i] = (char)(bytes[i] ^ (1 << (i % 8)));
   }
   for (size_t length = 0; length < size; length += 101) {
     assert_int_equal(cf_file_write(bad.text, bytes, length), CF_OK);
-    assert_int_equal(cf_checkpoint_read(bad.text, &c->registry, NULL), CF_BAD_FILE);
+    assert_int_equal(cf_checkpoint_read(bad.text, &c->registry), CF_BAD_FILE);
   }
   assert_says("cut short");
   snapshot(c, after);
@@ -139,24 +139,24 @@ static void other_shapes_and_names_are_refused(void **state) {
   const cf_path path = case_path(c, "checkpoint_000012.h5");
   const cf_registry kept = c->registry;
   c->registry.count -= 1;
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_BAD_FILE);
   assert_says("has \"step\", which this scene does not know");
   c->registry.count += 1;
   double extra = 5;
   assert_int_equal(cf_registry_add_numbers(&c->registry, "tip", "m", &extra, 1), CF_OK);
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_BAD_FILE);
   assert_says("has no \"tip\" (number), which this scene needs");
   c->registry.count -= 1;
   c->registry.entry[3].components = 2;
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_BAD_FILE);
   assert_says("/state/ledger has another shape");
   c->registry.entry[3].components = 3;
   c->grid.box.n[0] = 4;
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_BAD_FILE);
   assert_says("expected 4 x 4 x 3 cells, found 5 x 4 x 3");
   c->grid.box.n[0] = 5;
   c->grid.h = 0.5;
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_BAD_FILE);
   assert_says("spacing");
   c->grid.h = 0.25;
   assert_int_equal(kept.count, c->registry.count);
@@ -171,7 +171,7 @@ static void particles_get_room(void **state) {
   assert_int_equal(cf_particles_attribute(fresh, "age", "s", 1, CF_CARRIED, NULL), CF_OK);
   assert_int_equal(cf_particles_append(fresh, 3, NULL), CF_OK);
   c->registry.entry[2].particles = fresh;
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_OK);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_OK);
   assert_int_equal(fresh->count, CASE_PARTICLES);
   assert_memory_equal(fresh->id, c->ink->id, CASE_PARTICLES * sizeof *fresh->id);
   assert_memory_equal(fresh->attribute[0].at[1], c->ink->attribute[0].at[1],
@@ -187,14 +187,14 @@ static void other_attributes_are_refused(void **state) {
   write_good(c, 12, 2);
   const cf_path path = case_path(c, "checkpoint_000012.h5");
   --c->ink->attributes;
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_BAD_FILE);
   assert_says("has \"ink.age\", which this scene does not know");
   ++c->ink->attributes;
   assert_int_equal(cf_particles_attribute(c->ink, "S", "", 1, CF_CARRIED, NULL), CF_OK);
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_BAD_FILE);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_BAD_FILE);
   assert_says("has no array /state/ink/S");
   c->ink->attribute[2].role = CF_DERIVED;
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_OK);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_OK);
 }
 
 static void no_particles_is_a_state_too(void **state) {
@@ -203,7 +203,7 @@ static void no_particles_is_a_state_too(void **state) {
   write_good(c, 12, 2);
   const cf_path path = case_path(c, "checkpoint_000012.h5");
   c->ink->count = 3;
-  assert_int_equal(cf_checkpoint_read(path.text, &c->registry, NULL), CF_OK);
+  assert_int_equal(cf_checkpoint_read(path.text, &c->registry), CF_OK);
   assert_int_equal(c->ink->count, 0);
 }
 
@@ -291,7 +291,7 @@ static void failing_memory_loses_nothing(void **state) {
   s = CF_NO_MEMORY;
   for (long n = 1; s != CF_OK; ++n) {
     cf_mem_fail_at(n);
-    s = cf_checkpoint_read(path.text, &c->registry, NULL);
+    s = cf_checkpoint_read(path.text, &c->registry);
     cf_mem_fail_at(0);
     assert_true(s == CF_OK || s == CF_NO_MEMORY);
   }

@@ -69,8 +69,15 @@ static void a_checkpoint_tells_its_state(void **state) {
 
 static void a_folder_tells_what_it_holds(void **state) {
   const output_case *c = *state;
-  const char *const parts[] = {
-      "frames       1", "checkpoints  2", "step 12: whole", "step 13: not usable", "cut short", "phi ", NULL};
+  const char *const parts[] = {"frames       1",
+                               "checkpoints  2",
+                               "step 12: whole",
+                               "step 13: not usable",
+                               "cut short",
+                               "phi ",
+                               "age ",
+                               "Points.y",
+                               NULL};
   the_case.stamp.step = 13;
   assert_int_equal(cf_checkpoint_write(c->folder.text, &c->registry, &c->stamp, 2), CF_OK);
   assert_int_equal(truncate(case_path(c, "checkpoint_000013.h5").text, 2000), 0);
