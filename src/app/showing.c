@@ -11,6 +11,7 @@
 #include "base/real.h"
 #include "io/mesh.h"
 #include "render/colormap.h"
+#include "render/turn.h"
 
 enum { RANGE_FRAMES = 12 }; /* looked at for a film's range */
 
@@ -56,6 +57,17 @@ static cf_status take_style(cf_showing *s, const cf_arguments *a) {
   return CF_OK;
 }
 
+/* Which axis is upwards. */
+static int up_of(const cf_showing *s) {
+  const int word = s->scene->render.camera.up; /* auto, x, y, z */
+  const double *size = s->scene->domain.size.value;
+  if (s->scene->dim == 2 || s->look.style == CF_STYLE_CARDS) return 2;
+  if (word > 0) return word - 1;
+  for (int a = 0; a < 2; ++a)
+    if (size[a] > 1.01 * size[(a + 1) % 3] && size[a] > 1.01 * size[(a + 2) % 3]) return a;
+  return 2;
+}
+
 static void take_vector(const cf_param_numbers *from, double to[3]) {
   for (int a = 0; a < 3 && from->count == 3; ++a) to[a] = from->value[a];
 }
@@ -80,6 +92,9 @@ static void take_look(cf_showing *s, const cf_arguments *a) {
   l->turn = c->turn, l->rise = c->rise, l->angle = c->angle, l->zoom = c->zoom;
   l->focus = c->focus, l->aperture = c->aperture, l->shutter = c->shutter;
   l->light_turn = r->light.turn, l->light_rise = r->light.rise;
+  s->up = up_of(s);
+  cf_turn_vector(s->up, l->aim);
+  cf_turn_vector(s->up, l->eye);
   l->light_strength = r->light.strength, l->light_spread = r->light.spread;
 }
 
@@ -127,7 +142,7 @@ cf_status cf_showing_open(cf_showing *s, const char *folder, const cf_arguments 
 
 static void unload(cf_showing *s) {
   for (int i = 0; i < CF_EXHIBIT_FIELDS; ++i) {
-    if (s->values[i].at != NULL) cf_cell_destroy(&s->values[i], &s->frame.grid.box);
+    if (s->values[i].at != NULL) cf_cell_destroy(&s->values[i], &s->grid.box);
     s->values[i].at = NULL;
   }
   cf_mesh_destroy(s->mesh);
@@ -159,8 +174,13 @@ static const cf_frame_field *find(const cf_frame *f, const char *name) {
 static cf_status add_field(cf_showing *s, const char *name, const char *known, const int component) {
   const int n = s->exhibit.fields;
   const cf_frame_field *f = find(&s->frame, name);
-  CF_TRY(cf_cell_create(&s->values[n], &s->frame.grid.box));
-  CF_TRY(cf_frame_read_cell(&s->frame, name, component, s->values[n]));
+  cf_cell values;
+  CF_TRY(cf_cell_create(&values, &s->frame.grid.box));
+  cf_status status = cf_frame_read_cell(&s->frame, name, component, values);
+  if (status == CF_OK) status = cf_cell_create(&s->values[n], &s->grid.box);
+  if (status == CF_OK) cf_turn_field(s->up, &s->frame.grid, values.at, &s->grid, s->values[n].at);
+  cf_cell_destroy(&values, &s->frame.grid.box);
+  CF_TRY(status);
   s->exhibit.field[n] = (cf_exhibit_field){known, f != NULL ? f->unit : "", s->values[n].at};
   s->exhibit.fields = n + 1;
   return CF_OK;
@@ -171,13 +191,20 @@ static int size_of(const cf_frame *f, const char *name) {
   return field != NULL && field->components > 1 ? CF_MAGNITUDE : 0;
 }
 
+/* The grid of what is shown. */
+static cf_status upright(cf_showing *s, const cf_grid *g) {
+  s->exhibit.grid = &s->grid;
+  if (g->box.dim == 3) return cf_turn_grid(s->up, g, &s->grid);
+  s->grid = *g;
+  return CF_OK;
+}
+
 static cf_status read_head(cf_showing *s, const int64_t number) {
   cf_path path;
   CF_TRY(cf_path_make(&path, "%s/fields_%06" PRId64 ".vtkhdf", s->folder, number));
   CF_TRY(cf_frame_read(&s->frame, path.text));
-  s->exhibit.grid = &s->frame.grid;
   s->exhibit.time = s->frame.time;
-  return CF_OK;
+  return upright(s, &s->frame.grid);
 }
 
 static cf_status load_fields(cf_showing *s, const int64_t number) {
@@ -186,7 +213,7 @@ static cf_status load_fields(cf_showing *s, const int64_t number) {
   const bool crystal = s->look.style == CF_STYLE_CRYSTAL;
   const char *main = crystal ? s->surface : s->field;
   CF_TRY(add_field(s, main, main, size_of(&s->frame, main)));
-  static const char *const relief[] = {"thickness", "arrival"};
+  static const char *const relief[] = {"thickness", "age"};
   for (int i = 0; i < 2 && crystal; ++i)
     if (find(&s->frame, relief[i]) != NULL) CF_TRY(add_field(s, relief[i], relief[i], 0));
   if (s->look.style != CF_STYLE_FIELD) return CF_OK;
@@ -219,7 +246,9 @@ static cf_status load_surface(cf_showing *s, const int64_t number) {
     CF_TRY(cf_path_make(&path, "%s/mesh_%06" PRId64 ".ply", s->folder, number));
     CF_TRY(cf_mesh_create(&s->mesh));
     s->exhibit.mesh = s->mesh;
-    return cf_mesh_read(s->mesh, path.text);
+    CF_TRY(cf_mesh_read(s->mesh, path.text));
+    cf_turn_mesh(s->up, s->mesh);
+    return CF_OK;
   }
   if (!fields)
     return cf_fail(CF_BAD_FILE, "%s: frame %" PRId64 " has neither a mesh nor fields", s->folder, number);
@@ -234,6 +263,7 @@ static cf_status load_particles(cf_showing *s, const int64_t number) {
   CF_TRY(cf_points_read(&s->points, path.text));
   s->exhibit.time = s->points.time;
   s->exhibit.particles = s->points.count;
+  cf_turn_vectors(s->up, s->points.count, s->points.place);
   s->exhibit.place = (const float(*)[3])s->points.place;
   /* The field in the previews need not be an attribute; one that was asked for must be. */
   const bool asked = strcmp(s->field, s->scene->output.preview.field) != 0;
@@ -242,6 +272,7 @@ static cf_status load_particles(cf_showing *s, const int64_t number) {
   s->exhibit.value = s->value;
   if (s->look.shutter > 0) {
     CF_TRY(cf_points_attribute(&s->points, "velocity", 3, &s->velocity));
+    cf_turn_vectors(s->up, s->points.count, (float(*)[3])s->velocity);
     s->exhibit.velocity = (const float(*)[3])s->velocity;
   }
   return CF_OK;
@@ -252,9 +283,10 @@ static cf_status scene_grid(cf_showing *s) {
   const cf_scene_domain *d = &s->scene->domain;
   int cells[3] = {1, 1, 1};
   for (int a = 0; a < s->scene->dim; ++a) cells[a] = (int)d->cells.value[a];
-  CF_TRY(cf_grid_init(&s->grid, s->scene->dim, cells, s->scene->spacing, d->origin.value));
-  s->exhibit.grid = &s->grid;
-  return CF_OK;
+  cf_grid g;
+  CF_TRY(cf_grid_init(&g, s->scene->dim, cells, s->scene->spacing, d->origin.value));
+  CF_TRY(cf_box_init(&g.box, s->scene->dim, cells, 0));
+  return upright(s, &g);
 }
 
 cf_status cf_showing_load(cf_showing *s, const int64_t number) {
@@ -283,11 +315,23 @@ cf_status cf_showing_load(cf_showing *s, const int64_t number) {
 
 /* --- range --------------------------------------------------------------------------------------------------------------- */
 
+/* So near that the crystal of this frame, the last of those that are shown, fills the picture. */
+static cf_status frame_crystal(cf_showing *s, const int64_t number) {
+  if (cf_scene_has(s->scene, "render.camera.zoom") || s->scene->dim != 2) return CF_OK;
+  CF_TRY(cf_showing_load(s, number));
+  s->look.zoom = cf_crystal_zoom(&s->exhibit);
+  return CF_OK;
+}
+
 cf_status cf_showing_range(const int count, cf_showing *s, const int64_t *from, const int64_t *to) {
   double low = (double)INFINITY, high = -(double)INFINITY;
   for (int i = 0; i < count; ++i) {
     const cf_look look = s[i].look;
-    if (look.style == CF_STYLE_CRYSTAL || look.style == CF_STYLE_CARDS) return CF_OK;
+    if (look.style == CF_STYLE_CARDS) return CF_OK;
+    if (look.style == CF_STYLE_CRYSTAL) {
+      CF_TRY(frame_crystal(&s[i], s[i].number[to[i]]));
+      continue;
+    }
     if (!isnan(look.low)) continue; /* its scene says one */
     const int64_t frames = to[i] - from[i] + 1, looks = CF_MIN(frames, RANGE_FRAMES);
     for (int64_t n = 0; n < looks; ++n) {

@@ -22,11 +22,12 @@ typedef struct cf_showing {
   char surface[CF_NAME_MAX]; /* whose surface is */
   int frames;
   int64_t *number; /* of the frames, ascending */
+  int up;          /* axis that is upwards; 2: nothing is turned */
 
   /* of the frame that is loaded */
   cf_exhibit exhibit;
   cf_frame frame;
-  cf_grid grid;
+  cf_grid grid; /* of the fields or the box, upright */
   cf_cell values[CF_EXHIBIT_FIELDS];
   cf_mesh *mesh;
   cf_points points;

@@ -8,21 +8,28 @@
 
 #include "base/param.h"
 
-#define CF_RENDER_STYLE_WORDS(W)                                                                            \
-  W(AUTO, auto)                                                                                             \
-  W(FIELD, field) W(INK, ink) W(SMOKE, smoke) W(CRYSTAL, crystal) W(CORAL, coral) W(MESH, mesh) W(GEL, gel) \
+#define CF_RENDER_STYLE_WORDS(W)                                                            \
+  W(AUTO, auto)                                                                             \
+  W(FIELD, field)                                                                           \
+  W(INK, ink) W(SMOKE, smoke) W(CRYSTAL, crystal) W(CORAL, coral) W(MESH, mesh) W(GEL, gel) \
       W(PARTICLES, particles) W(CARDS, cards)
 
-#define CF_RENDER_CAMERA_TABLE(P, R)                                                                    \
-  P(turn, number, CF_NONE, "degree", "[-360, 360]",                                                     \
-    "Direction it looks from, around z: 0 is from -y, 90 from +x; left out: what suits the style")      \
-  P(rise, number, CF_NONE, "degree", "[-90, 90]", "How far above the horizon it stands")                \
-  P(angle, number, CF_NONE, "degree", "(0, 150)", "Angle of view from the lower to the upper edge")     \
-  P(zoom, number, "1", "", "(0, 100)", "1 shows everything, 2 half of it, from half as far")            \
-  P(aim, numbers, CF_NONE, "m", "3 of (-inf, inf)", "The place it looks at; left out: the middle")      \
-  P(eye, numbers, CF_NONE, "m", "3 of (-inf, inf)", "The place it stands at, instead of turn and rise") \
-  P(focus, number, CF_NONE, "m", "(0, inf)", "Distance that is sharp; left out: that of aim")           \
-  P(aperture, number, CF_NONE, "m", "[0, inf)", "Diameter of the lens: 0 makes everything sharp")       \
+#define CF_RENDER_UP_WORDS(W) W(AUTO, auto) W(X, x) W(Y, y) W(Z, z)
+
+#define CF_RENDER_CAMERA_TABLE(P, R)                                                                     \
+  P(up, word, "auto", "", CF_WORDS(CF_RENDER_UP_WORDS),                                                  \
+    "The axis that is upwards in 3D; auto: the longest one, if one alone is, else z; always z in model " \
+    "snowfall")                                                                                          \
+  P(turn, number, CF_NONE, "degree", "[-360, 360]",                                                      \
+    "Direction it looks from, around z: 0 is from -y, 90 from +x; left out: what suits the style")       \
+  P(rise, number, CF_NONE, "degree", "[-90, 90]", "How far above the horizon it stands")                 \
+  P(angle, number, CF_NONE, "degree", "(0, 150)", "Angle of view from the lower to the upper edge")      \
+  P(zoom, number, "1", "", "(0, 100)",                                                                   \
+    "1 shows everything, 2 half of it, from half as far; style crystal, left out: the crystal")          \
+  P(aim, numbers, CF_NONE, "m", "3 of (-inf, inf)", "The place it looks at; left out: the middle")       \
+  P(eye, numbers, CF_NONE, "m", "3 of (-inf, inf)", "The place it stands at, instead of turn and rise")  \
+  P(focus, number, CF_NONE, "m", "(0, inf)", "Distance that is sharp; left out: that of aim")            \
+  P(aperture, number, CF_NONE, "m", "[0, inf)", "Diameter of the lens: 0 makes everything sharp")        \
   P(shutter, number, "0", "s", "[0, inf)", "How long it is open: what moves is blurred along its way")
 
 #define CF_RENDER_LIGHT_TABLE(P, R)                                                                        \

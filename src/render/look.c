@@ -90,8 +90,8 @@ static const cf_mesh_attribute *attribute_of(const cf_exhibit *e) {
   return NULL;
 }
 
-/* Ink and smoke begin at 0, and are at their densest where all but the densest hundredth of what there is has been
- * counted: the few cells of a source do not make all the rest pale. */
+/* Ink and smoke begin at 0, and are at their densest where all but the densest quarter of what there is has been counted:
+ * the few cells of a source do not make all the rest pale. */
 static void widen_by_field(const cf_look *look, const cf_exhibit *e, double *low, double *high) {
   enum { BINS = 1024 };
   const cf_box *b = &e->grid->box;
@@ -108,7 +108,7 @@ static void widen_by_field(const cf_look *look, const cf_exhibit *e, double *low
       if (v > 0 && isfinite(v)) amount[CF_MIN((int)(v / most * BINS), BINS - 1)] += v, sum += v;
     }
   int top = BINS - 1;
-  for (double above = amount[top]; top > 0 && above < 0.01 * sum;) above += amount[--top];
+  for (double above = amount[top]; top > 0 && above < 0.25 * sum;) above += amount[--top];
   widen(low, high, 0), widen(low, high, most * (top + 1) / BINS);
 }
 

@@ -93,7 +93,7 @@ typedef struct cf_exhibit {
   const char *title;
   double time;         /* s */
   const cf_grid *grid; /* of the fields, or of the box alone */
-  int fields;          /* the first is what is shown; others by name: arrival, thickness, arrows_x ... */
+  int fields;          /* the first is what is shown; others by name: thickness, age, arrows_x ... */
   cf_exhibit_field field[CF_EXHIBIT_FIELDS];
   const cf_mesh *mesh;   /* NULL: the surface of the first field */
   const char *attribute; /* of the mesh that colours it; NULL: none */
@@ -111,6 +111,9 @@ const cf_exhibit_field *cf_exhibit_find(const cf_exhibit *e, const char *name);
 
 /* Widens low..high (start with INFINITY, -INFINITY) by what the look would show of the exhibit. */
 cf_status cf_exhibit_range(const cf_look *look, const cf_exhibit *e, double *low, double *high);
+
+/* How near style crystal must go so that what is frozen of the first field fills the picture's height. */
+double cf_crystal_zoom(const cf_exhibit *e);
 
 /* The picture, on a fresh canvas. CF_BAD_ARGUMENT: the exhibit lacks what the style shows, with a sentence that says
  * what; CF_NO_MEMORY. */

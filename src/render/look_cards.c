@@ -112,7 +112,19 @@ static cf_status ground_create(const cf_exhibit *e, ground *g) {
 
 /* --- the picture --------------------------------------------------------------------------------------------------------- */
 
-/* The camera stands before the box, a little above the ground, and is sharp a quarter of the way into it. */
+/* What is sharp lies as near as it can with no flake higher than a third of the picture, and a dozen flakes between 0.7
+ * and 1.4 times that distance. */
+static double sharp_distance(const cf_exhibit_flakes *f, const cf_stand *stand, const double aspect) {
+  const double high = 2 * tan(0.5 * stand->angle * acos(-1.0) / 180);
+  double volume = 1, radius = 0;
+  for (int a = 0; a < 3; ++a) volume *= stand->high[a] - stand->low[a];
+  for (int64_t i = 0; i < f->air.count; ++i) radius = CF_MAX(radius, (double)f->air.radius[i]);
+  const double dense = CF_MAX((double)f->air.count, 1) / volume;
+  const double many = cbrt(12 / (0.8 * dense * high * high * aspect));
+  return CF_MIN(CF_MAX(many, 2 * radius * 16 / (5 * high)), 0.5 * (stand->high[1] - stand->low[1]));
+}
+
+/* The camera stands at the front of the box, a little above the ground. */
 static void dusk(const cf_look *look, const cf_exhibit *e, cf_studio *s) {
   cf_stand stand = {.turn = 0, .rise = 3, .angle = 32};
   const cf_vec night = cf_or_colour(look->background, (cf_vec){0.020f, 0.032f, 0.060f});
@@ -122,9 +134,10 @@ static void dusk(const cf_look *look, const cf_exhibit *e, cf_studio *s) {
   if (isnan(look->eye[0]) && isnan(look->turn)) {
     const double eye[3] = {0.5 * (stand.low[0] + stand.high[0]), stand.low[1], stand.low[2] + 0.32 * tall};
     for (int a = 0; a < 3; ++a) s->camera.eye[a] = eye[a], s->camera.aim[a] = cf_or(look->aim[a], eye[a]);
-    if (isnan(look->aim[1])) s->camera.aim[1] = eye[1] + 0.25 * deep;
-    s->camera.focus = cf_or(look->focus, 0.25 * deep);
-    s->camera.aperture = cf_or(look->aperture, 0.012 * deep);
+    const double sharp = sharp_distance(e->flakes, &stand, (double)look->width / look->height);
+    if (isnan(look->aim[1])) s->camera.aim[1] = eye[1] + sharp;
+    s->camera.focus = cf_or(look->focus, sharp);
+    s->camera.aperture = cf_or(look->aperture, 0.04 * s->camera.focus);
   }
   cf_look_key(look, 150, 24, (cf_vec){1.25f, 1.12f, 0.95f}, 3, s);
   s->light[s->lights++] = (cf_light){cf_light_toward(-70, 38), {0.30f, 0.46f, 0.80f}, 0.25f};

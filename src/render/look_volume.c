@@ -50,7 +50,7 @@ cf_status cf_draw_ink(const cf_look *look, const cf_exhibit *e, cf_canvas *c) {
   const cf_vec white = cf_or_colour(look->background, (cf_vec){0.97f, 0.965f, 0.95f});
   s.backdrop = (cf_backdrop){white, cf_vec_times(white, (cf_vec){0.70f, 0.735f, 0.77f}), {0.5f, 0.47f}, 1.0f};
   CF_TRY(make_medium(look, e, &m));
-  const float depth = depth_of(look, e, 2.5);
+  const float depth = depth_of(look, e, 2);
   m.absorb = (cf_vec){-depth * logf(CF_MAX(lets.x, 1e-4f)), -depth * logf(CF_MAX(lets.y, 1e-4f)),
                       -depth * logf(CF_MAX(lets.z, 1e-4f))};
   s.media = 1, s.medium[0] = &m;
