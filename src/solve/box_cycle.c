@@ -166,6 +166,7 @@ static void run_update(const cf_box_solver *f, cf_pass *p, cf_box_iteration *it)
   p->lift = it->lift;
   p->sums_of_x = f->singular;
   cf_wave_run(&f->wave, p);
+  it->lifted = CF_MAX(it->lifted, fabs(it->lift));
   it->lift = 0;
   it->rr = sum_of(f, CF_SUM_RESIDUAL) * it->scale * it->scale;
   it->rate = sqrt(it->rr / before);

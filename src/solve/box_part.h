@@ -32,6 +32,7 @@ typedef struct cf_box_iteration {
   double start;       /* rr where the recursion began */
   double rate;        /* of |r| in the latest pass */
   double shift, lift; /* FORM takes shift from b, the next pass adds lift to x */
+  double lifted;      /* the largest lift so far: x has its round-off */
   bool ready;         /* the first part of the next cycle is done */
 } cf_box_iteration;
 

@@ -217,13 +217,13 @@ static bool iterate(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell
                     const double enough, cf_box_iteration *it) {
   const bool far = enough < RECURSION_FLOOR * RECURSION_FLOOR * it->start;
   const double turn = far ? CF_MAX(RECURSION_TURN * RECURSION_TURN * it->start, enough) : enough;
-  const double expected = 1.5 * it->rate * it->rate * it->rr, lifted = fabs(it->lift);
+  const double expected = 1.5 * it->rate * it->rate * it->rr;
   if (f->depth > 1)
     cf_box_cycle(f, b, x, expected <= turn, it);
   else
     cf_box_sweeps(f, b, x, PASS_MARGIN * sqrt(enough / it->rr), it);
   /* x may be coarser than what r can tell: in single precision, or next to a large lift. */
-  const double rounding = CF_REAL_EPSILON * f->scale * lifted;
+  const double rounding = CF_REAL_EPSILON * f->scale * it->lifted;
   const bool coarse = sizeof(cf_real) == sizeof(float) ||
                       rounding * rounding * (double)cf_box_cells(&A->grid.box) > MEAN_SHARE * enough;
   if (!(it->rr <= turn) || !(far || coarse)) return true;
