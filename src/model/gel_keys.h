@@ -103,7 +103,7 @@ enum { CF_GEL_TRANSFER_APIC, CF_GEL_TRANSFER_FLIP };
     "a "                                                                                                    \
     "cell is")                                                                                              \
   P(gravity, numbers, CF_NONE, "m/s^2", "2..3 of (-inf, inf)", "Acceleration; left out: none")              \
-  P(particles, integer, "2", "", "[1, 16]", "Particles a cell along each axis")                             \
+  P(particles, integer, "2", "", "[1, 64]", "Particles a cell along each axis")                             \
   P(jitter, number, "0", "", "[0, 1]",                                                                      \
     "Random displacement of particles at time 0, in halves of their spacing")                               \
   P(transfer, word, "apic", "", CF_WORDS(CF_GEL_TRANSFER_WORDS),                                            \

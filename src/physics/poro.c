@@ -98,16 +98,16 @@ static cf_status follow(cf_poro *w, const cf_nodes *nodes) {
 
 static void clear(const cf_poro *w) {
   const cf_tiles *t = w->tiles;
-  CF_PARALLEL_TILES(t, w->grid->threads, r)
-  CF_TILE_ROWS(t, r, j, k)
-  CF_TILE_RUNS(t, r, run) {
-    const ptrdiff_t p = cf_box_at(&w->grid->box, run->low, j, k);
-    const size_t bytes = sizeof(cf_real) * (size_t)(run->high - run->low);
-    memset(w->C.at + p, 0, bytes);
-    memset(w->m.at + p, 0, bytes);
-    memset(w->A.at + p, 0, bytes);
-    memset(w->fill.at + p, 0, bytes);
-  }
+  CF_PARALLEL_TILES (t, w->grid->threads, r)
+    CF_TILE_ROWS (t, r, j, k)
+      CF_TILE_RUNS (t, r, run) {
+        const ptrdiff_t p = cf_box_at(&w->grid->box, run->low, j, k);
+        const size_t bytes = sizeof(cf_real) * (size_t)(run->high - run->low);
+        memset(w->C.at + p, 0, bytes);
+        memset(w->m.at + p, 0, bytes);
+        memset(w->A.at + p, 0, bytes);
+        memset(w->fill.at + p, 0, bytes);
+      }
 }
 
 /* Element p of the lattice for node n of a block; false beyond the lattice. */
@@ -267,13 +267,13 @@ static void keep(const cf_poro *w) {
 static double gained_by_nodes(const cf_poro *w) {
   const cf_tiles *t = w->tiles;
   for (ptrdiff_t r = 0; r < t->rows; ++r) w->rows[r] = 0;
-  CF_PARALLEL_TILES(t, w->grid->threads, r)
-  CF_TILE_ROWS(t, r, j, k)
-  CF_TILE_RUNS(t, r, run)
-  for (int i = run->low; i < run->high; ++i) {
-    const ptrdiff_t p = cf_box_at(&w->grid->box, i, j, k);
-    w->rows[r] += (double)w->m.at[p] - (double)w->m0.at[p];
-  }
+  CF_PARALLEL_TILES (t, w->grid->threads, r)
+    CF_TILE_ROWS (t, r, j, k)
+      CF_TILE_RUNS (t, r, run)
+        for (int i = run->low; i < run->high; ++i) {
+          const ptrdiff_t p = cf_box_at(&w->grid->box, i, j, k);
+          w->rows[r] += (double)w->m.at[p] - (double)w->m0.at[p];
+        }
   return cf_sum_ordered(w->rows, t->rows);
 }
 

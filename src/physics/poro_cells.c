@@ -64,25 +64,25 @@ static void find_kinds(const cf_poro *w, const double t, const double *values) {
   const cf_tiles *tiles = w->tiles;
   const cf_box *box = &w->grid->box;
   unsigned char *kind = w->kind + box->first, *inside = w->region->kind;
-  CF_PARALLEL_TILES(tiles, w->grid->threads, r)
-  CF_TILE_ROWS(tiles, r, j, k)
-  CF_TILE_RUNS(tiles, r, run)
-  for (int i = run->low; i < run->high; ++i) {
-    const ptrdiff_t p = cf_box_at(box, i, j, k);
-    double place[3];
-    kind[p] = CF_PORO_NONE;
-    inside[p] = CF_CELL_WALL;
-    if (!((double)w->fill.at[p] > CF_PORO_LEAST_FILL)) continue;
-    place_of(w, i, j, k, place);
-    const int s = holder(w, p, place, t);
-    if (s < 0) {
-      kind[p] = CF_PORO_FREE;
-      inside[p] = CF_CELL_INSIDE;
-    } else {
-      kind[p] = w->p.source[s].kind == CF_PORO_BATH ? CF_PORO_HELD_SURFACE : CF_PORO_HELD_CELL;
-      w->value.at[p] = (cf_real)values[s];
-    }
-  }
+  CF_PARALLEL_TILES (tiles, w->grid->threads, r)
+    CF_TILE_ROWS (tiles, r, j, k)
+      CF_TILE_RUNS (tiles, r, run)
+        for (int i = run->low; i < run->high; ++i) {
+          const ptrdiff_t p = cf_box_at(box, i, j, k);
+          double place[3];
+          kind[p] = CF_PORO_NONE;
+          inside[p] = CF_CELL_WALL;
+          if (!((double)w->fill.at[p] > CF_PORO_LEAST_FILL)) continue;
+          place_of(w, i, j, k, place);
+          const int s = holder(w, p, place, t);
+          if (s < 0) {
+            kind[p] = CF_PORO_FREE;
+            inside[p] = CF_CELL_INSIDE;
+          } else {
+            kind[p] = w->p.source[s].kind == CF_PORO_BATH ? CF_PORO_HELD_SURFACE : CF_PORO_HELD_CELL;
+            w->value.at[p] = (cf_real)values[s];
+          }
+        }
 }
 
 /* Free cells beside held ones. Reads only whether neighbours are held, which nobody changes here. */
@@ -169,17 +169,17 @@ void cf_poro_add_rates(const cf_poro *w, const double t, const double d) {
     const cf_poro_source *source = &w->p.source[s];
     if (source->kind != CF_PORO_RATE || !works(source, t)) continue;
     const double rate = cf_fn_at(&source->value, 0, 0, 0, t);
-    CF_PARALLEL_TILES(tiles, w->grid->threads, r)
-    CF_TILE_ROWS(tiles, r, j, k)
-    CF_TILE_RUNS(tiles, r, run)
-    for (int i = run->low; i < run->high; ++i) {
-      const ptrdiff_t p = cf_box_at(box, i, j, k);
-      double place[3];
-      if (!cf_poro_is_free(w, p)) continue;
-      place_of(w, i, j, k, place);
-      if (source->shape != NULL && cf_shape_distance(source->shape, NULL, t, place) >= 0) continue;
-      w->m.at[p] += (cf_real)(d * rate * volume * (double)w->fill.at[p]);
-    }
+    CF_PARALLEL_TILES (tiles, w->grid->threads, r)
+      CF_TILE_ROWS (tiles, r, j, k)
+        CF_TILE_RUNS (tiles, r, run)
+          for (int i = run->low; i < run->high; ++i) {
+            const ptrdiff_t p = cf_box_at(box, i, j, k);
+            double place[3];
+            if (!cf_poro_is_free(w, p)) continue;
+            place_of(w, i, j, k, place);
+            if (source->shape != NULL && cf_shape_distance(source->shape, NULL, t, place) >= 0) continue;
+            w->m.at[p] += (cf_real)(d * rate * volume * (double)w->fill.at[p]);
+          }
   }
 }
 

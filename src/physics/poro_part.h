@@ -20,12 +20,12 @@ static inline bool cf_poro_is_free(const cf_poro *w, const ptrdiff_t p) {
 }
 
 /* Runs over the cells p of active tiles, in parallel. */
-#define FOR_CELLS(w, p)                                            \
-  CF_PARALLEL_TILES((w)->tiles, (w)->grid->threads, r_)            \
-  CF_TILE_ROWS((w)->tiles, r_, j_, k_)                             \
-  CF_TILE_RUNS((w)->tiles, r_, run_) {                             \
-    const ptrdiff_t from_ = cf_box_at(&(w)->grid->box, 0, j_, k_); \
-    for (ptrdiff_t p = from_ + run_->low; p < from_ + run_->high; ++p)
+#define FOR_CELLS(w, p)                                                \
+  CF_PARALLEL_TILES ((w)->tiles, (w)->grid->threads, r_)               \
+    CF_TILE_ROWS ((w)->tiles, r_, j_, k_)                              \
+      CF_TILE_RUNS ((w)->tiles, r_, run_) {                            \
+        const ptrdiff_t from_ = cf_box_at(&(w)->grid->box, 0, j_, k_); \
+        for (ptrdiff_t p = from_ + run_->low; p < from_ + run_->high; ++p)
 #define END_CELLS }
 
 /* The kind of every cell and the value of held ones, at time t. */
