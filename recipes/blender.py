@@ -8,8 +8,8 @@ RUN is a run's folder. Shown is what it holds of the frame (the last one if none
 
     fields_000012.vdb             a volume: smoke, ink, whatever is called `density` (formats: [vdb])
     mesh_000012.ply               a surface, coloured by its first attribute (formats: [ply])
-    particles_000012_*.npy        balls; with `orientation`, `radius` and `kind`, and an atlas in the scene: flakes (formats:
-    particles_SET_000012_*.npy    [npy])
+    particles_000012_*.npy        balls, where there is no surface; with `orientation`, `radius` and `kind`, and an
+    particles_SET_000012_*.npy    atlas in the scene: flakes (formats: [npy])
 
 Material, light and camera suit the model, and are ordinary Blender objects: --save keeps the scene for going on by hand.
 Lengths are metres, as everywhere. Velocities (`vel` in the volume) are m/s: for motion blur set the volume's velocity
@@ -411,7 +411,7 @@ def build(run, o):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     things, length = [], max(run.size)
     volume, surface = run.file("fields_{:06d}.vdb"), run.file("mesh_{:06d}.ply")
-    if volume:
+    if volume and not (surface and run.model in ("phase", "gel")):  # the surface is that of the volume
         things.append(add_volume(run, os.path.abspath(volume), length))
     if surface:
         things.append(add_surface(run, surface))
@@ -419,7 +419,7 @@ def build(run, o):
     for word, s in particle_files(run).items():
         if {"orientation", "radius", "kind"} <= set(s) and os.path.exists(atlas):
             things.append(add_flakes(run, word, s, atlas))
-        elif not (surface and word.endswith(("gel", "ground"))):
+        elif not surface:  # of the particles, if there is one
             spacing = (math.prod(run.size) / len(s["position"])) ** (1 / len(run.size))
             things.append(add_balls(run, word, s, o.radius or min(0.25 * spacing, 0.004 * length)))
     things = [thing for thing in things if thing is not None]
