@@ -96,25 +96,17 @@ static void free_swelling_is_that_of_the_closed_form(void **state) {
   table_free(&t);
 }
 
-/* A bar between slippery walls, fixed at one end: f = sqrt(M/rho)/(4 L). */
-static void bar_swings_at_its_frequency(void **state) {
-  (void)state;
-  table t = table_read("elastic_bar.csv");
-  const double rho = table_at(&t, 0, "rho"), f = table_at(&t, 0, "f_confined"), c = table_at(&t, 0, "c_p");
-  const int n = 48;
-  const double h = 1.0 / n, low[3] = {8 * h, 8 * h, 0}, high[3] = {low[0] + 1, 28 * h, 0};
-  gel_case g = {.material = {{.mu = table_at(&t, 0, "mu"),
-                              .lambda = table_at(&t, 0, "lambda"),
-                              .density = rho,
-                              .water = 0.7,
-                              GEL_ELASTIC}}};
+/* The frequency of a bar of length 1 between slippery walls, fixed at one end, with n cells a length. */
+static double bar_frequency(const int n, const cf_mpm_material *material, const double c) {
+  const double h = 1.0 / n, low[3] = {8 * h, 8 * h, 0}, high[3] = {low[0] + 1, low[1] + 0.5, 0};
+  gel_case g = {.material = {*material}};
   const cf_shape wall[3] = {cf_shape_plane((double[3]){low[0], 0, 0}, (double[3]){1, 0, 0}),
                             cf_shape_plane((double[3]){0, low[1], 0}, (double[3]){0, 1, 0}),
                             cf_shape_plane((double[3]){0, high[1], 0}, (double[3]){0, -1, 0})};
   const cf_mpm_obstacle walls[3] = {{.shape = &wall[0], .contact = CF_MPM_STICKY},
                                     {.shape = &wall[1], .contact = CF_MPM_SLIP},
                                     {.shape = &wall[2], .contact = CF_MPM_SLIP}};
-  OK(cf_grid_init(&g.grid, 2, (int[]){n + 24, 40, 1}, h, NULL));
+  OK(cf_grid_init(&g.grid, 2, (int[]){n + 24, n / 2 + 24, 1}, h, NULL));
   gel_fill(&g, low, high, 2, 0);
   gel_start(&g, &(cf_mpm_params){.flip = -1, .obstacles = 3, .obstacle = walls});
   for (int64_t i = 0; i < g.set->count; ++i)
@@ -128,8 +120,24 @@ static void bar_swings_at_its_frequency(void **state) {
     if (now * before < 0 && s > 0) crossing[found++] = dt * (s + now / (before - now));
     before = now;
   }
-  CLOSE(0.5 / (crossing[1] - crossing[0]) / f, 1, 0.02);
   gel_end(&g);
+  return 0.5 / (crossing[1] - crossing[0]);
+}
+
+/* f = sqrt(M/rho)/(4 L). A wall is felt about a cell behind its surface, so errors are of first order; what they
+ * extrapolate to is not. */
+static void bar_swings_at_its_frequency(void **state) {
+  (void)state;
+  table t = table_read("elastic_bar.csv");
+  const double f = table_at(&t, 0, "f_confined"), c = table_at(&t, 0, "c_p");
+  const cf_mpm_material material = {.mu = table_at(&t, 0, "mu"),
+                                    .lambda = table_at(&t, 0, "lambda"),
+                                    .density = table_at(&t, 0, "rho"),
+                                    .water = 0.7,
+                                    GEL_ELASTIC};
+  const double coarse = bar_frequency(20, &material, c) / f, fine = bar_frequency(40, &material, c) / f;
+  CLOSE(fine, 1, 0.06);
+  CLOSE(2 * fine - coarse, 1, 0.02);
   table_free(&t);
 }
 
