@@ -10,7 +10,7 @@
 #include "grid/sweep.h"
 
 /* Elements of a half row that a column has in 2D. */
-#define COLUMN 64
+#define COLUMN 256
 /* What the planes between the first and the last stage may take: half of a small second-level cache. */
 #define WINDOW_BYTES  (768 * 1024)
 #define TILE_ROWS_MIN 8
@@ -114,7 +114,7 @@ static void run_block(const cf_wave *w, const cf_pass *p, const int j, const int
     const int low = CF_MAX(j - v, 0), high = CF_MIN(end - v, s->n[1]), plane = step - v;
     if (low >= high || plane < 0 || plane >= planes) continue;
     cf_strip t = strip_of(w, s, low, high, s->dim == 3 ? plane : 0, s->dim == 3 ? 0 : plane);
-    if (s->dim == 3) set_next(s, tile_low - v, CF_MIN(tile_end - v, s->n[1]), &t);
+    set_next(s, tile_low - v, CF_MIN(tile_end - v, s->n[1]), &t);
     cf_stage_run(p, v, &t);
   }
 }
