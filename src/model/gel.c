@@ -95,6 +95,7 @@ static cf_status gel_step(void *model, const double t, const double dt, cf_step_
   cf_gel *g = model;
   double gained, clock = cf_stage_clock();
   cf_solve_report solve;
+  CF_TRY(keep_inside(g)); /* whoever looked at the state between steps may have written to it */
   cf_mpm_scatter(g->mpm, dt);
   clock = cf_stage_end(report, CF_STAGE_TRANSFER, clock);
   CF_TRY(cf_mpm_move_nodes(g->mpm, t, dt, &solve));

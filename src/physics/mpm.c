@@ -210,7 +210,7 @@ CF_SMALL void flow_plastically(const int dim, const cf_mpm *m, cf_mpm_eight *e) 
   cf_polar(dim, e->F, R);
   const cf_real *kind = cf_mpm_at(m, m->at.material, 0) + e->first;
   for (int l = 0; l < e->n; ++l) {
-    const cf_mpm_material *a = &m->p.material[(int)kind[l]];
+    const cf_mpm_material *a = cf_mpm_material_of(m, kind[l]);
     if (isfinite(a->stretch) || isfinite(a->compression)) yield(dim, a, e, R, l);
   }
   cf_mpm_store(e->n, m, m->at.plastic, 1, e->first, &e->plastic);

@@ -31,7 +31,7 @@ CF_SMALL void stress_change(const int dim, const cf_mpm *m, const cf_mpm_eight *
   cf_elastic_neo_hookean_change(dim, e->F, &e->mu, &e->lambda, dF, other);
   const cf_real *kind = cf_mpm_at(m, m->at.material, 0) + e->first;
   for (int l = 0; l < e->n; ++l)
-    if (m->p.material[(int)kind[l]].law == CF_MPM_NEO_HOOKEAN)
+    if (cf_mpm_material_of(m, kind[l])->law == CF_MPM_NEO_HOOKEAN)
       for (int c = 0; c < dim * dim; ++c) dP[c][l] = other[c][l];
 }
 

@@ -35,6 +35,11 @@ CF_SMALL void cf_mpm_store(const int n, const cf_mpm *m, const int attribute, co
   for (int c = 0; c < components; ++c) cf_lanes_store(n, &x[c], cf_mpm_at(m, attribute, c), first);
 }
 
+/* The material of a particle; the first where what is written there is none (not finite: found after the step). */
+static inline const cf_mpm_material *cf_mpm_material_of(const cf_mpm *m, const cf_real kind) {
+  return &m->p.material[kind >= 0 && kind < (cf_real)m->p.materials ? (int)kind : 0];
+}
+
 /* Place, weights, deformation and material of particles first ... first + 7 of block b (fewer at its end). */
 CF_SMALL void cf_mpm_eight_load(const int dim, const cf_mpm *m, const cf_block *b, const int64_t first,
                                 cf_mpm_eight *e) {
@@ -49,7 +54,7 @@ CF_SMALL void cf_mpm_eight_load(const int dim, const cf_mpm *m, const cf_block *
   cf_lanes kind;
   cf_mpm_load(e->n, m, m->at.material, 1, first, &kind);
   for (int l = 0; l < CF_WIDE; ++l) {
-    const cf_mpm_material *a = &m->p.material[(int)kind[l]];
+    const cf_mpm_material *a = cf_mpm_material_of(m, kind[l]);
     const cf_real harder =
         a->hardening > 0 ? (cf_real)exp(a->hardening * (1 - (double)e->plastic[l])) : (cf_real)1;
     e->mu[l] = harder * (cf_real)a->mu;
@@ -65,7 +70,7 @@ CF_SMALL bool cf_mpm_law_of(const cf_mpm *m, const cf_mpm_eight *e, const cf_mpm
   if (m->p.materials == 1) return m->p.material[0].law == law;
   const cf_real *kind = cf_mpm_at(m, m->at.material, 0) + e->first;
   for (int l = 0; l < e->n; ++l)
-    if (m->p.material[(int)kind[l]].law == law) return true;
+    if (cf_mpm_material_of(m, kind[l])->law == law) return true;
   return false;
 }
 
@@ -83,7 +88,7 @@ CF_SMALL void cf_mpm_elastic(const int dim, const cf_mpm *m, const cf_mpm_eight 
   cf_elastic_neo_hookean(dim, e->F, &e->mu, &e->lambda, other, J);
   const cf_real *kind = cf_mpm_at(m, m->at.material, 0) + e->first;
   for (int l = 0; l < e->n; ++l)
-    if (m->p.material[(int)kind[l]].law == CF_MPM_NEO_HOOKEAN)
+    if (cf_mpm_material_of(m, kind[l])->law == CF_MPM_NEO_HOOKEAN)
       for (int c = 0; c < dim * dim; ++c) T[c][l] = other[c][l];
 }
 
