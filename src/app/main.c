@@ -28,7 +28,8 @@ static cf_status check_operands(const cf_command *c, const cf_arguments *a) {
 /* A result that did not reach its place (a full disk) is a failure. */
 static cf_status close_results(void) {
   const bool failed = ferror(stdout) != 0;
-  if (fflush(stdout) != 0 || failed) return cf_fail(CF_CANNOT_WRITE, "the output could not be written");
+  if (fflush(stdout) != 0 || failed)
+    return cf_fail(CF_CANNOT_WRITE, "the output could not be written: is the disk full that it goes to?");
   return CF_OK;
 }
 

@@ -277,7 +277,7 @@ static cf_status read_all(cf_arguments *a, const int argc, char **argv, const un
   a->operands = argc - optind;
   a->operand = argv + optind;
   if (a->until > 0 && a->steps > 0)
-    return cf_fail(CF_BAD_USAGE, "%s: --until and --steps exclude each other", argv[0]);
+    return cf_fail(CF_BAD_USAGE, "%s: --until and --steps exclude each other: give one of them", argv[0]);
   return CF_OK;
 }
 

@@ -26,7 +26,11 @@ cf_status cf_new_array(void **block, const size_t count, const size_t size) {
     return cf_fail(CF_NO_MEMORY, "%zu elements of %zu bytes: more than can be addressed", count, size);
   const size_t bytes = (CF_MAX(count * size, 1) + CF_ALIGN - 1) / CF_ALIGN * CF_ALIGN;
   void *fresh = told_to_fail() ? NULL : aligned_alloc(CF_ALIGN, bytes);
-  if (fresh == NULL) return cf_fail(CF_NO_MEMORY, "out of memory: %zu bytes asked for", bytes);
+  if (fresh == NULL)
+    return cf_fail(
+        CF_NO_MEMORY,
+        "out of memory: %zu more bytes were not to be had: use fewer cells, or end what else takes memory",
+        bytes);
   memset(fresh, 0, bytes);
   *block = fresh;
   return CF_OK;

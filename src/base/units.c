@@ -23,7 +23,9 @@ static cf_status open_database(void) {
   if (database != NULL) return CF_OK;
   ut_set_error_message_handler(ut_ignore);
   database = ut_read_xml(NULL);
-  if (database == NULL) return cf_fail(CF_FAILED, "the database of units (udunits2) could not be read");
+  if (database == NULL)
+    return cf_fail(CF_FAILED,
+                   "the database of units (udunits2) could not be read: is libudunits2-data installed?");
   return CF_OK;
 }
 
