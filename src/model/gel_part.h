@@ -14,7 +14,7 @@
 /* Cells around the domain that the lattice of the particles has besides: nodes beyond walls, blocks that align. */
 #define CF_GEL_MARGIN 8
 /* The lattice's cells an axis where there are no walls. */
-#define CF_GEL_UNBOUNDED(dim) ((dim) == 3 ? 2048 : 16384)
+#define CF_GEL_UNBOUNDED(dim) ((dim) == 3 ? 1024 : 8192)
 
 typedef struct cf_gel {
   const cf_scene *scene;
