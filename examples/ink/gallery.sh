@@ -1,0 +1,12 @@
+# Fig 5: the jet with ever more of Fourier's law, with Fourier's law alone, and without diffusion; and a heavy drop that
+# breaks into rings. See tools/gallery.sh.
+for f_t in 0 0.25 0.5 0.75 1; do
+  grow "jet-f_t-$f_t" scene.yaml --set "diffusion.f_t=$f_t" --set "title='F_T = $f_t'"
+done
+grow jet-z-fourier scene.yaml --set diffusion.tau=0 --set "title='Fourier'"
+grow jet-z-none scene.yaml --set diffusion.k=0 --set "title='No diffusion'"
+"$program" sheet "$out"/jet-* -o "$out/jet.png" --columns 7
+show jet.png 1600 jet
+grow drop drop.yaml
+convert "$out"/drop/preview_0000??.png -resize 50% +append "$out/drop.png"
+show drop.png 1600
