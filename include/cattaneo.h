@@ -361,6 +361,7 @@ typedef struct cf_solve_report {
   int levels;      /* that the cycle went through */
   double residual; /* |b - A x| / |b| at the end */
   bool converged;
+  int pockets; /* parts of the region whose level nothing fixes: each keeps the mean that its x came with */
   const char *method; /* that did it: "sor", "multigrid", "multigrid-pcg", "line" or "direct" */
 } cf_solve_report;
 
@@ -626,10 +627,14 @@ void cf_helmholtz_destroy(cf_helmholtz *A);
 cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c);
 
 /* Solves A x = b to |b - A x| <= tolerance |b|; x comes as the initial guess. With alpha = 0 and no held wall
- * the solution is known up to a constant: b is made to sum to zero and x keeps the mean it came with. Otherwise
+ * the solution is known up to a constant: b is made to sum to zero and x keeps the mean it came with (in a
+ * region, every part that is cut off for itself). Cells that are not inside are left alone. Otherwise
  * b is kept. Not converging is a report, not a failure. CF_NOT_FINITE: b or x holds a value that is not. */
 cf_status cf_helmholtz_solve(cf_helmholtz *A, cf_cell b, const cf_solve_options *o, cf_cell x,
                              cf_solve_report *report);
+
+/* b += what cells of the region that are held contribute, 2 beta x_held/h^2 for each of their faces. */
+void cf_helmholtz_add_held(const cf_helmholtz *A, cf_cell b);
 
 /* y = A x. x's ghosts on periodic walls are filled. */
 void cf_helmholtz_apply(cf_helmholtz *A, cf_cell x, cf_cell y);
@@ -659,7 +664,7 @@ double cf_helmholtz_residual(cf_helmholtz *A, cf_cell x, cf_cell b);
   F(region_create) F(region_destroy) F(region_kinds) F(region_values) F(region_update)                  \
   F(region_inside)                                                                                      \
   F(helmholtz_create) F(helmholtz_destroy) F(helmholtz_set) F(helmholtz_solve)                          \
-  F(helmholtz_apply) F(helmholtz_residual)
+  F(helmholtz_apply) F(helmholtz_residual) F(helmholtz_add_held)
 /* clang-format on */
 
 #ifdef CF_SINGLE

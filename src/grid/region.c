@@ -61,9 +61,10 @@ static void for_rows(cf_region *r, const int low[3], const int high[3], row_acti
     return;
   }
   const cf_tiles *t = r->tiles;
-  for (ptrdiff_t v = 0; v < t->rows; ++v) CF_TILE_ROWS(t, v, j, k) {
+  for (ptrdiff_t v = 0; v < t->rows; ++v)
+    CF_TILE_ROWS (t, v, j, k) {
       if (j < low[1] || j >= high[1] || k < low[2] || k >= high[2]) continue;
-      CF_TILE_RUNS(t, v, run) {
+      CF_TILE_RUNS (t, v, run) {
         const int from = CF_MAX(run->low, low[0]), to = CF_MIN(run->high, high[0]);
         if (from < to) act(&(row_of_cells){r, from, to, j, k}, context);
       }

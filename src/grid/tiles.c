@@ -253,6 +253,7 @@ cf_status cf_tiles_update(cf_tiles *t) {
     t->asked[t->pending[v]] = false;
   }
   t->pendings = 0;
+  ++t->updates;
   if (t->changes > 0) make_runs(t);
   return CF_OK;
 }
@@ -310,6 +311,14 @@ void cf_tiles_retire_bytes(const cf_tiles *t, void *at, const size_t element) {
     }
   }
   give_back(&p);
+}
+
+void cf_tiles_follow_bytes(const cf_tiles *t, const int64_t since, void *at, const size_t element) {
+  if (since == t->updates) return;
+  if (since == t->updates - 1)
+    cf_tiles_retire_bytes(t, at, element);
+  else
+    madvise((char *)at - (size_t)t->box.first * element, (size_t)t->box.size * element, MADV_DONTNEED);
 }
 
 void cf_tiles_retire_cell(const cf_tiles *t, const cf_cell f) {

@@ -56,6 +56,7 @@ typedef struct cf_tiles {
   uint64_t *seen;        /* the same at the latest update: what sweeps visit */
   uint64_t *left;        /* those that left in it */
   ptrdiff_t count;       /* active tiles at the latest update */
+  int64_t updates;       /* so far */
   cf_tile_row *row;
   cf_run *run;
   ptrdiff_t rows, runs, room;
@@ -100,6 +101,10 @@ cf_status cf_tiles_update(cf_tiles *t);
 void cf_tiles_retire_cell(const cf_tiles *t, cf_cell f);
 void cf_tiles_retire_face(const cf_tiles *t, cf_face f);
 void cf_tiles_retire_bytes(const cf_tiles *t, void *at, size_t element); /* the same for other elements */
+
+/* For a field that was right for update number `since`: retired if one update has passed since; given back as a whole
+ * if more have, so it is all 0; otherwise left alone. */
+void cf_tiles_follow_bytes(const cf_tiles *t, int64_t since, void *at, size_t element);
 
 /* Zeroed fields on the box whose pages are small, so that single ones can be given back. cf_cell_destroy frees
  * them. CF_NO_MEMORY. */

@@ -7,9 +7,8 @@
 
 #define STEP CF_FEW_CELLS
 
-static double coefficient(const cf_level *l, const int a, const int i, const int high, const ptrdiff_t p) {
-  const double table = (double)(high ? l->axis[a].hi[i] : l->axis[a].lo[i]);
-  return l->variable ? table * (double)l->beta.at[a][high ? p + l->box.stride[a] : p] : table;
+static double coefficient(const cf_level *l, const int a, const int i, const int high) {
+  return (double)(high ? l->axis[a].hi[i] : l->axis[a].lo[i]);
 }
 
 /* The cell next to index i of an axis; -1 where there is none (a wall, or the cell itself). */
@@ -58,13 +57,12 @@ static ptrdiff_t place_of(const cf_level *l, const int number) {
 /* A row of the matrix times the cell's volume, which makes it symmetric. */
 static void gather_cell(const cf_level *l, const int at[3], cf_direct *d) {
   const int me = number_of(l, at);
-  const ptrdiff_t p = place_of(l, me);
   const double v = volume_at(l, at);
   d->volume[me] = v;
-  d->surplus[me] = v * (l->variable ? (double)l->alpha_cell.at[p] : l->alpha);
+  d->surplus[me] = v * l->alpha;
   for (int a = 0; a < l->box.dim; ++a)
     for (int high = 0; high < 2; ++high) {
-      const double c = v * coefficient(l, a, at[a], high, p);
+      const double c = v * coefficient(l, a, at[a], high);
       int other[3] = {at[0], at[1], at[2]};
       other[a] = neighbour(&l->axis[a], at[a], high);
       if (other[a] < 0)
@@ -145,13 +143,13 @@ static void gather_line(const cf_level *l, const int axis, const cf_cell b, cons
     at[axis] = i;
     const double v = volume_at(l, at);
     t->y[i] = v * (double)b.at[p];
-    t->s[i] = l->variable ? (double)l->alpha_cell.at[p] : l->alpha;
+    t->s[i] = l->alpha;
     for (int a = 0; a < l->box.dim; ++a)
       for (int high = 0; high < 2; ++high)
-        if (neighbour(&l->axis[a], at[a], high) < 0) t->s[i] += coefficient(l, a, at[a], high, p);
+        if (neighbour(&l->axis[a], at[a], high) < 0) t->s[i] += coefficient(l, a, at[a], high);
     t->s[i] *= v;
-    t->next[i] = i + 1 < t->n ? v * coefficient(l, axis, i, 1, p) : 0;
-    t->last[i] = i == 0 && neighbour(x, 0, 0) >= 0 ? v * coefficient(l, axis, 0, 0, p) : 0;
+    t->next[i] = i + 1 < t->n ? v * coefficient(l, axis, i, 1) : 0;
+    t->last[i] = i == 0 && neighbour(x, 0, 0) >= 0 ? v * coefficient(l, axis, 0, 0) : 0;
   }
 }
 

@@ -2,15 +2,13 @@
  *
  * The one operator of the project, on one level of a multigrid hierarchy:
  *
- *     (A x)_p = alpha_p x_p + sum over axes a of  lo_a b_p (x_p - x_{p-a}) + hi_a b_{p+a} (x_p - x_{p+a}),
+ *     (A x)_p = alpha x_p + sum over axes a of  lo_a (x_p - x_{p-a}) + hi_a (x_p - x_{p+a}),
  *
- * which is (alpha - div beta grad) x on cells, point-scaled. lo_a and hi_a are tables along axis a alone:
+ * which is (alpha - div beta grad) x on cells for numbers alpha and beta, point-scaled (fields and regions: varied.h).
+ * lo_a and hi_a are tables along axis a alone:
  * 1/(width of the cell * distance to the neighbour). They hold the walls as well, so no kernel asks where it
  * is: 0 on an insulated wall, 1/(w * w/2) on a held one (the ghost behind it stays 0; values of a wall are
  * part of the right side), and the distance around the seam on a periodic axis.
- *
- * alpha is a number or a cell field. beta is a number, folded into lo and hi, or a face field b with b_p on
- * the low face of cell p. Cells cut off by beta = 0 with alpha = 0 have no equation: they are left alone.
  *
  * Coarse cells are pairs of fine cells per axis; where the count is odd the last one is a triple, so every
  * extent coarsens down to 1 and a wall never moves. Hence widths vary (in the last cell of an axis), and the
@@ -30,7 +28,7 @@ typedef struct cf_axis {
   int n;
   bool periodic, held[2];
   double *width;
-  cf_real *lo, *hi;  /* see above; with a constant beta these are multiplied by it */
+  cf_real *lo, *hi;  /* see above, multiplied by beta */
   double *lo1, *hi1; /* the same without beta */
 } cf_axis;
 
@@ -52,9 +50,6 @@ typedef struct cf_level {
   bool has_seam;         /* any axis periodic */
 
   double alpha;
-  bool variable; /* alpha_cell and beta are fields */
-  cf_cell alpha_cell;
-  cf_face beta;
 
   cf_cell x, b, r; /* correction, right side, residual: coarse levels own x and b, every level r */
   double *rows;    /* partial sums, 2 a row */
@@ -66,8 +61,7 @@ void cf_level_residual(const cf_level *l, cf_cell x, cf_cell b, cf_cell r);
 /* y = A x. */
 void cf_level_apply(const cf_level *l, cf_cell x, cf_cell y);
 
-/* One red-black sweep of over-relaxed Gauss-Seidel on A x = b. Where alpha is a field, a cell is over-relaxed by
- * what diffusion has of its diagonal: one that a large alpha holds is simply solved. */
+/* One red-black sweep of over-relaxed Gauss-Seidel on A x = b. */
 void cf_level_smooth(const cf_level *l, cf_cell b, cf_real omega, cf_cell x);
 
 /* The diagonal's part that diffusion adds in the middle of the box, over alpha: how much there is to smooth.

@@ -13,6 +13,7 @@
 #include "solve/box_solver.h"
 #include "solve/pcg.h"
 #include "solve/transfer.h"
+#include "solve/varied.h"
 
 /* On the coarsest level: so far beyond any outer tolerance that its error is no part of the cycle's. */
 #define COARSEST_TOLERANCE 1e-8
@@ -31,8 +32,6 @@ static void level_destroy(cf_level *l, const bool finest) {
   if (!finest) {
     cf_cell_destroy(&l->x, &l->box);
     cf_cell_destroy(&l->b, &l->box);
-    cf_cell_destroy(&l->alpha_cell, &l->box);
-    cf_face_destroy(&l->beta, &l->box);
   }
   cf_free(l->rows);
 }
@@ -50,8 +49,7 @@ void cf_helmholtz_destroy(cf_helmholtz *A) {
   cf_cell_destroy(&A->Ap, &A->grid.box);
   cf_cell_destroy(&A->z, &A->grid.box);
   coarsest_destroy(A);
-  if (A->owns_alpha) cf_cell_destroy(&A->level[0].alpha_cell, &A->grid.box);
-  if (A->owns_beta) cf_face_destroy(&A->level[0].beta, &A->grid.box);
+  cf_varied_destroy(A->varied);
   for (int l = 0; l < A->levels; ++l) level_destroy(&A->level[l], l == 0);
   cf_free(A->scratch);
   cf_free(A->line);
@@ -159,66 +157,9 @@ static void set_tables(cf_level *l, const double alpha, const double beta) {
     }
 }
 
-static void fill_cells(const cf_level *l, const double value, const cf_cell f) {
-  for (ptrdiff_t r = 0; r < cf_box_rows(&l->box); ++r)
-    for (int i = 0; i < l->box.n[0]; ++i) f.at[cf_box_row(&l->box, r) + i] = (cf_real)value;
-}
-
-static void fill_faces(const cf_level *l, const double value, const cf_face f) {
-  for (int a = 0; a < l->box.dim; ++a)
-    for (int k = 0; k < cf_box_extent(&l->box, 2, a); ++k)
-      for (int j = 0; j < cf_box_extent(&l->box, 1, a); ++j)
-        for (int i = 0; i < cf_box_extent(&l->box, 0, a); ++i)
-          f.at[a][cf_box_at(&l->box, i, j, k)] = (cf_real)value;
-}
-
-/* Level 0 reads the caller's fields in place; a number beside a field becomes a field of our own. */
-static cf_status set_finest_fields(cf_helmholtz *A, const cf_coefficients *c) {
-  cf_level *l = &A->level[0];
-  const cf_box *box = &l->box;
-  if (c->alpha_at != NULL) {
-    if (A->owns_alpha) cf_cell_destroy(&l->alpha_cell, box);
-    A->owns_alpha = false;
-    l->alpha_cell = *c->alpha_at;
-  } else {
-    if (!A->owns_alpha) CF_TRY(cf_cell_create(&l->alpha_cell, box));
-    A->owns_alpha = true;
-    fill_cells(l, c->alpha, l->alpha_cell);
-  }
-  if (c->beta_at != NULL) {
-    if (A->owns_beta) cf_face_destroy(&l->beta, box);
-    A->owns_beta = false;
-    l->beta = *c->beta_at;
-    for (int a = 0; a < box->dim; ++a) cf_halo_fill(box, &l->wrap, 0, a, l->beta.at[a]);
-  } else {
-    if (!A->owns_beta) CF_TRY(cf_face_create(&l->beta, box));
-    A->owns_beta = true;
-    fill_faces(l, c->beta, l->beta);
-  }
-  return CF_OK;
-}
-
-static cf_status set_variable(cf_helmholtz *A, const cf_coefficients *c) {
-  CF_TRY(set_finest_fields(A, c));
-  for (int l = 0; l < A->levels; ++l) {
-    cf_level *level = &A->level[l];
-    if (l > 0) {
-      if (level->alpha_cell.at == NULL) CF_TRY(cf_cell_create(&level->alpha_cell, &level->box));
-      if (level->beta.at[0] == NULL) CF_TRY(cf_face_create(&level->beta, &level->box));
-      cf_level_restrict(&A->level[l - 1], A->level[l - 1].alpha_cell, level, level->alpha_cell, A->scratch);
-      cf_level_restrict_faces(&A->level[l - 1], level);
-    }
-    set_tables(level, 0, 1);
-    level->variable = true;
-  }
-  A->depth = A->levels;
-  return CF_OK;
-}
-
 static cf_status set_constant(cf_helmholtz *A, const cf_coefficients *c) {
   for (int l = 0; l < A->levels; ++l) {
     set_tables(&A->level[l], c->alpha, c->beta);
-    A->level[l].variable = false;
   }
   A->depth = 1;
   while (A->depth < A->levels && cf_level_stiffness(&A->level[A->depth - 1]) > CF_STIFF_ENOUGH) ++A->depth;
@@ -256,15 +197,16 @@ cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
   if (!(c->alpha >= 0) || !(c->beta >= 0) || !isfinite(c->alpha) || !isfinite(c->beta))
     return cf_fail(CF_BAD_ARGUMENT, "alpha = %g, beta = %g: must be finite and not negative", c->alpha,
                    c->beta);
-  const bool variable = c->alpha_at != NULL || c->beta_at != NULL;
-  if (variable)
-    CF_TRY(set_variable(A, c));
-  else
-    CF_TRY(set_constant(A, c));
-  const bool no_alpha = c->alpha_at == NULL ? c->alpha == 0 : cf_level_sum(&A->level[0], *c->alpha_at) == 0;
+  A->is_varied = c->alpha_at != NULL || c->beta_at != NULL || c->region != NULL;
+  if (A->is_varied) {
+    A->in_box = A->singular = false;
+    if (A->varied == NULL) CF_TRY(cf_varied_create(&A->varied, A));
+    return cf_varied_set(A->varied, A, c);
+  }
+  CF_TRY(set_constant(A, c));
   A->has_held_wall = has_held_wall(A);
-  A->singular = no_alpha && !A->has_held_wall;
-  A->in_box = !variable && cf_box_solver_set(A->box, A);
+  A->singular = c->alpha == 0 && !A->has_held_wall;
+  A->in_box = cf_box_solver_set(A->box, A);
   return coarsest_create(A);
 }
 

@@ -13,6 +13,7 @@
 #include "grid/sweep.h"
 #include "solve/box_solver.h"
 #include "solve/multigrid.h"
+#include "solve/varied.h"
 
 CF_CLONES static void add_row(const int n, const cf_real factor, const cf_real *from, cf_real *to) {
   CF_ROW_LOOP
@@ -99,11 +100,16 @@ static void set_outside(const cf_helmholtz *A, const cf_cell x) {
 }
 
 void cf_helmholtz_apply(cf_helmholtz *A, const cf_cell x, const cf_cell y) {
+  if (A->is_varied) {
+    cf_varied_apply(A->varied, x, y);
+    return;
+  }
   set_outside(A, x);
   cf_level_apply(&A->level[0], x, y);
 }
 
 double cf_helmholtz_residual(cf_helmholtz *A, const cf_cell x, const cf_cell b) {
+  if (A->is_varied) return cf_varied_residual(A->varied, x, b);
   cf_level *l = &A->level[0];
   set_outside(A, x);
   cf_level_residual(l, x, b, A->z);
@@ -150,6 +156,7 @@ static cf_status solve_plain(cf_helmholtz *A, const cf_cell b, const cf_solve_op
 }
 
 const char *cf_helmholtz_method(const cf_helmholtz *A) {
+  if (A->is_varied) return cf_varied_depth(A->varied) == 1 ? "pcg" : "multigrid-pcg";
   if (cf_level_is_line(&A->level[0])) return "line";
   if (A->depth == 1 && cf_level_is_few(&A->level[0])) return "direct";
   return A->in_box ? cf_box_solver_method(A->box) : "multigrid-pcg";
@@ -158,15 +165,18 @@ const char *cf_helmholtz_method(const cf_helmholtz *A) {
 cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                              cf_solve_report *report) {
   cf_level *l = &A->level[0];
-  *report = (cf_solve_report){.levels = A->depth, .method = cf_helmholtz_method(A)};
-  if (A->singular) cf_level_remove_mean(l, b);
-  const double mean = A->singular ? mean_of(l, x) : 0;
+  *report = (cf_solve_report){.levels = A->depth, .pockets = A->singular, .method = cf_helmholtz_method(A)};
   bool finished = false;
   if (A->in_box) CF_TRY(cf_box_solver_run(A->box, A, b, o, x, report, &finished));
-  if (!finished) {
-    if (A->in_box) report->method = "multigrid-pcg";
-    CF_TRY(solve_plain(A, b, o, x, report));
+  if (finished) return CF_OK;
+  if (A->in_box) report->method = "multigrid-pcg";
+  if (A->is_varied) {
+    report->levels = cf_varied_depth(A->varied);
+    return cf_varied_solve(A->varied, b, o, x, report);
   }
+  if (A->singular) cf_level_remove_mean(l, b);
+  const double mean = A->singular ? mean_of(l, x) : 0;
+  CF_TRY(solve_plain(A, b, o, x, report));
   if (A->singular) cf_level_shift(l, mean - mean_of(l, x), x);
   return CF_OK;
 }
@@ -177,12 +187,17 @@ void cf_helmholtz_add_walls(const cf_helmholtz *A, const cf_wall_values *v, cons
     for (int side = 0; side < 2; ++side) {
       if (v->at[a][side] == NULL) continue;
       const cf_wall_side w = cf_wall_side_of(&l->box, a, side);
-      const double table = (double)(side == 0 ? l->axis[a].lo[0] : l->axis[a].hi[l->axis[a].n - 1]);
+      const double table = side == 0 ? l->axis[a].lo1[0] : l->axis[a].hi1[l->axis[a].n - 1];
       for (int i_c = 0; i_c < w.n_c; ++i_c)
         for (int i_b = 0; i_b < w.n_b; ++i_b) {
           const ptrdiff_t p = cf_wall_cell(&l->box, &w, i_b, i_c);
-          const double beta = l->variable ? (double)l->beta.at[a][side == 0 ? p : p + w.outward] : 1;
+          const double beta =
+              A->is_varied ? cf_varied_wall_beta(A->varied, a, side == 0 ? p : p + w.outward) : A->beta;
           b.at[p] += (cf_real)(table * beta * v->at[a][side][i_b + (ptrdiff_t)w.n_b * i_c]);
         }
     }
+}
+
+void cf_helmholtz_add_held(const cf_helmholtz *A, const cf_cell b) {
+  if (A->is_varied) cf_varied_add_held(A->varied, b);
 }

@@ -29,7 +29,4 @@ void cf_level_restrict(const cf_level *fine, cf_cell r, const cf_level *coarse, 
 void cf_level_prolong(const cf_level *coarse, cf_cell x_c, const cf_level *fine, cf_cell x_f,
                       cf_real *scratch);
 
-/* The face field beta of the coarse level: the mean of the fine faces that make up a coarse face. */
-void cf_level_restrict_faces(const cf_level *fine, const cf_level *coarse);
-
 #endif

@@ -20,10 +20,10 @@ static int pick(const int n) { return (int)(test_random(&seed) * n); }
 
 static void visit(const cf_tiles *t) {
   memset(visited, 0, sizeof visited);
-  CF_PARALLEL_TILES(t, 2, r)
-  CF_TILE_ROWS(t, r, j, k)
-  CF_TILE_RUNS(t, r, run)
-  for (int i = run->low; i < run->high; ++i) ++visited[k][j][i];
+  CF_PARALLEL_TILES (t, 2, r)
+    CF_TILE_ROWS (t, r, j, k)
+      CF_TILE_RUNS (t, r, run)
+        for (int i = run->low; i < run->high; ++i) ++visited[k][j][i];
 }
 
 static void set_wanted(const cf_tiles *t, const int ti, const int tj, const int tk, const int on) {
@@ -110,14 +110,15 @@ static void what_leaves_is_zero_and_what_stays_is_kept(void **state) {
     }
     OK(cf_tiles_update(t));
     cf_tiles_retire_cell(t, f);
-    for (ptrdiff_t r = 0; r < t->rows; ++r) CF_TILE_ROWS(t, r, j, k)
-    CF_TILE_RUNS(t, r, run)
-    for (int i = run->low; i < run->high; ++i) {
-      cf_real *at = &f.at[cf_box_at(&b, i, j, k)];
-      const cf_real number = (cf_real)(1 + i + NX * (j + NY * k));
-      assert_true(*at == 0 || *at == number);
-      *at = number;
-    }
+    for (ptrdiff_t r = 0; r < t->rows; ++r)
+      CF_TILE_ROWS (t, r, j, k)
+        CF_TILE_RUNS (t, r, run)
+          for (int i = run->low; i < run->high; ++i) {
+            cf_real *at = &f.at[cf_box_at(&b, i, j, k)];
+            const cf_real number = (cf_real)(1 + i + NX * (j + NY * k));
+            assert_true(*at == 0 || *at == number);
+            *at = number;
+          }
     for (int k = 0; k < NZ; ++k)
       for (int j = 0; j < NY; ++j)
         for (int i = 0; i < NX; ++i)
@@ -158,10 +159,10 @@ static void a_ball_that_moves_gives_its_pages_back(void **state) {
         }
     OK(cf_tiles_update(t));
     cf_tiles_retire_cell(t, f);
-    CF_PARALLEL_TILES(t, 2, r)
-    CF_TILE_ROWS(t, r, j, k)
-    CF_TILE_RUNS(t, r, run)
-    for (int i = run->low; i < run->high; ++i) f.at[cf_box_at(&b, i, j, k)] = 1;
+    CF_PARALLEL_TILES (t, 2, r)
+      CF_TILE_ROWS (t, r, j, k)
+        CF_TILE_RUNS (t, r, run)
+          for (int i = run->low; i < run->high; ++i) f.at[cf_box_at(&b, i, j, k)] = 1;
     BELOW((double)pages_touched(&b, f) / (double)all, 0.11);
     assert_true(t->changes > 0);
   }

@@ -4,7 +4,7 @@
  * and for Poisson's equation, for any walls and any extents. Each test prints the largest count it met, by sigma.
  *
  * Coefficients that jump by 10 inside a cell of a coarse level (blocks that do not fit the extents: the odd ones)
- * cost up to 4 more: averaging cannot tell where in that cell the jump is. Blocks that fit cost one.
+ * cost up to 5 more, blocks that fit up to 2.
  */
 #include "solve_case.h"
 
@@ -34,7 +34,7 @@ static bool blocks_fit(const solve_case *c) {
 
 static int allowed(const solve_case *c) {
   const int jumps = c->beta == BETA_CHECKERS || c->beta == BETA_BLOCKS;
-  return (c->sigma <= 1e3 ? 10 : 12) + (jumps && !blocks_fit(c) ? 4 : jumps);
+  return (c->sigma <= 1e3 ? 10 : 12) + (jumps && !blocks_fit(c) ? 5 : 2 * jumps);
 }
 
 static int iterations(const solve_case *c) {
@@ -124,7 +124,7 @@ static void counts_do_not_grow_with_the_box(void **state) {
       most = count > most ? count : most;
     }
     print_message("beta %d, Poisson, from 32^2 on: %d to %d\n", beta, least, most);
-    BELOW(most - least, beta <= BETA_SMOOTH ? 1 : 3);
+    BELOW(most - least, beta <= BETA_SMOOTH ? 1 : 6);
   }
 }
 
@@ -172,7 +172,7 @@ static void held_cells_cost_nothing(void **state) {
           OK(cf_helmholtz_solve(s.A, s.b, &(cf_solve_options){1e-6, 100}, s.x, &report));
           BELOW(cf_helmholtz_residual(s.A, s.x, s.b), 1.01e-6);
           case_end(&s);
-          BELOW(report.iterations, 10);
+          BELOW(report.iterations, 8);
           worst_count = report.iterations > worst_count ? report.iterations : worst_count;
         }
   print_message("held cells: at most %d\n", worst_count);

@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "solve/coarsen.h"
 #include "solve/multigrid.h"
 #include "solve/transfer.h"
 #include "solve_case.h"
@@ -115,50 +116,61 @@ static void prolongation_reproduces_linear_functions_inside(void **state) {
     }
 }
 
-/* With beta a number on every face, in any box, the coarse faces are that number. */
-static void coarse_faces_of_a_constant_are_that_constant(void **state) {
-  (void)state;
-  for (int e = 0; e < EXTENTS; ++e)
-    for (int kind = 0; kind < 3; ++kind) {
-      solve_setup s;
-      begin(e, kind == 0 ? "iii" : kind == 1 ? "ppp" : "oio", &s);
-      cf_cell alpha;
-      OK(cf_cell_create(&alpha, &s.g.box));
-      case_fill_alpha(&s.g.box, 1, alpha);
-      OK(cf_helmholtz_set(s.A, &(cf_coefficients){.beta = 0.7, .alpha_at = &alpha}));
-      for (int l = 0; l < s.A->levels; ++l) {
-        const cf_level *level = &s.A->level[l];
-        for (int a = 0; a < level->box.dim; ++a)
-          for (int k = 0; k < cf_box_extent(&level->box, 2, a); ++k)
-            for (int j = 0; j < cf_box_extent(&level->box, 1, a); ++j)
-              for (int i = 0; i < cf_box_extent(&level->box, 0, a); ++i)
-                CLOSE(level->beta.at[a][cf_box_at(&level->box, i, j, k)], 0.7, 16 * CF_REAL_EPSILON);
-      }
-      cf_cell_destroy(&alpha, &s.g.box);
-      case_end(&s);
+/* A level of couplings c(i) across x, 1 across y, and the one above it. */
+typedef struct couple {
+  cf_coupled fine, coarse;
+} couple;
+
+static void couple_begin(couple *t, const bool layered) {
+  cf_box box;
+  const bool periodic[3] = {false, false, false};
+  OK(cf_box_init(&box, 2, (int[]){16, 16, 1}, 1));
+  OK(cf_coupled_create(&t->fine, &box, periodic, 1, NULL));
+  t->fine.coarsened[0] = t->fine.coarsened[1] = true;
+  OK(cf_coarsen_create(&t->fine, &t->coarse));
+  for (int j = 0; j < 16; ++j)
+    for (int i = 0; i < 16; ++i) {
+      const ptrdiff_t p = cf_box_at(&box, i, j, 0);
+      t->fine.free[p] = 0.5f;
+      t->fine.c[0][p] = i == 0 ? 0 : layered ? (float)(1 + i) : 0.7f;
+      t->fine.c[1][p] = j == 0 ? 0 : 0.7f;
     }
+  OK(cf_coupled_finish(&t->fine));
+  OK(cf_coarsen(&t->fine, &t->coarse));
+}
+
+static void couple_end(couple *t) {
+  cf_coupled_destroy(&t->fine);
+  cf_coupled_destroy(&t->coarse);
+}
+
+/* Twice the faces at twice the distance. */
+static void coarse_couplings_of_a_constant_are_that_constant(void **state) {
+  (void)state;
+  couple t;
+  couple_begin(&t, false);
+  for (int J = 1; J < 7; ++J)
+    for (int I = 2; I < 7; ++I) {
+      const ptrdiff_t p = cf_box_at(&t.coarse.box, I, J, 0);
+      CLOSE(t.coarse.free[p], 2, 1e-6);
+      CLOSE(t.coarse.c[0][p], 0.7, 1e-6);
+      CLOSE(t.coarse.c[1][p], 0.7, 1e-6);
+      for (int a = 0; a < 2; ++a)
+        assert_int_equal(t.fine.weight[a][cf_box_at(&t.fine.box, 2 * I, 2 * J, 0)], 64);
+    }
+  couple_end(&t);
 }
 
 /* Layers across x: between coarse centres the resistances of the fine faces add. */
 static void layers_add_in_series(void **state) {
   (void)state;
-  solve_case c = {.dim = 2, .n = {16, 16, 1}, .walls = "ii", .sigma = 1};
-  solve_setup s;
-  case_begin(&c, &s);
-  const cf_box *box = &s.g.box;
-  OK(cf_face_create(&s.beta, box));
-  for (int j = 0; j <= 16; ++j)
-    for (int i = 0; i <= 16; ++i) {
-      s.beta.at[0][cf_box_at(box, i, j, 0)] = (cf_real)(1 + i);
-      s.beta.at[1][cf_box_at(box, i, j, 0)] = 1;
-    }
-  OK(cf_helmholtz_set(s.A, &(cf_coefficients){.alpha = 1, .beta_at = &s.beta}));
-  const cf_level *coarse = &s.A->level[1];
+  couple t;
+  couple_begin(&t, true);
   for (int I = 1; I < 8; ++I) {
     const double resistance = 0.5 / (2 * I) + 1.0 / (2 * I + 1) + 0.5 / (2 * I + 2);
-    CLOSE(coarse->beta.at[0][cf_box_at(&coarse->box, I, 3, 0)], 2 / resistance, 64 * CF_REAL_EPSILON);
+    CLOSE(t.coarse.c[0][cf_box_at(&t.coarse.box, I, 3, 0)], 2 / resistance, 1e-4);
   }
-  case_end(&s);
+  couple_end(&t);
 }
 
 int main(void) {
@@ -166,7 +178,7 @@ int main(void) {
       cmocka_unit_test(restriction_keeps_integrals_and_constants),
       cmocka_unit_test(prolongation_reproduces_constants),
       cmocka_unit_test(prolongation_reproduces_linear_functions_inside),
-      cmocka_unit_test(coarse_faces_of_a_constant_are_that_constant),
+      cmocka_unit_test(coarse_couplings_of_a_constant_are_that_constant),
       cmocka_unit_test(layers_add_in_series),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

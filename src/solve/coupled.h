@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A level of the hierarchy for equations whose coefficients vary or that hold in a part of the box only: cells, and how
+ * strongly neighbours are coupled.
+ *
+ *     (A e)_p = (free_p + held_p) e_p + sum over axes of  c_p (e_p - e_{p-a}) + c_{p+a} (e_p - e_{p+a})
+ *
+ * c_p belongs to the low face of cell p and is 0 where no flux passes; held is what faces with a known value add, free
+ * the rest of the diagonal (alpha). Everything is extensive, integrated over the cell: a coarse cell's free is the
+ * sum of its children's, a coarse residual the sum of theirs. A cell with no diagonal has no equation.
+ *
+ * The level lives in single precision: it only preconditions (varied.h). The equation is scaled so that the largest
+ * diagonal of the finest level is about 1.
+ *
+ * What is around it comes in four steps: half sweeps of red-black Gauss-Seidel, mildly over-relaxed; extra sweeps
+ * over the band of cells near closed and held faces (McAdams, Sifakis, Teran 2010), for which neither smoothing nor
+ * correction is as good as inside; the residual summed over the children of coarse cells; and interpolation
+ *
+ *     e_p += e_c + sum over axes of w_a (e_{c+a} - e_c)
+ *
+ * from the parent and its nearest neighbour along each axis, where w_a is the share of the resistance between the two
+ * coarse centres that lies before the fine one: 1/4 where nothing varies, 0 through a closed face (coarsen.h makes
+ * it; bytes in units of 1/256).
+ *
+ * Sweeps visit the runs of active tiles, or all rows.
+ */
+#ifndef CF_SOLVE_COUPLED_H
+#define CF_SOLVE_COUPLED_H
+
+#include "grid/tiles.h"
+
+/* The parent of a cell of an island. */
+#define CF_NO_PARENT PTRDIFF_MIN
+
+typedef struct cf_coupled {
+  int dim, threads;
+  cf_box box;
+  bool periodic[3];
+  bool coarsened[3];     /* towards the next level */
+  const cf_tiles *tiles; /* NULL: dense */
+  cf_tiles *own_tiles;   /* of coarse levels */
+  int64_t followed;      /* the update of the tiles that the fields are right for */
+  cf_tile_row *row;      /* what sweeps visit: of the tiles, or all */
+  cf_run *run;
+  ptrdiff_t rows;
+  cf_tile_row *all_rows; /* our own, where there are no tiles */
+  cf_run all[1];
+
+  float *e, *r, *rest;          /* correction, right side, residual */
+  float *inverse, *free, *held; /* 1/diagonal (0: no equation) and its parts */
+  float *c[3];                  /* couplings on low faces */
+  unsigned char *weight[3];     /* of interpolation from the next level */
+
+  /* Cells whose parent is not the coarse cell around them (coarsen.h), and islands: pieces of a block coupled to nothing
+   * else, whose constant is solved for by itself. They take no part in the sweeps of restriction and interpolation. */
+  ptrdiff_t odds, odd_room, *odd_cell, *odd_parent;
+  float *odd_value;
+  int32_t *odd_island; /* 0: has a parent, or the number of the island */
+
+  bool is_gentle; /* alpha holds some cells so much that they must not be over-relaxed */
+  ptrdiff_t bands[2], band_room[2], *band[2]; /* cells near closed and held faces, by colour */
+} cf_coupled;
+
+/* Shapes a level on the box `b`; fields are pages, untouched. CF_NO_MEMORY; what was made is freed by destroy. */
+cf_status cf_coupled_create(cf_coupled *l, const cf_box *b, const bool periodic[3], int threads,
+                            const cf_tiles *tiles);
+void cf_coupled_destroy(cf_coupled *l); /* a zeroed one is fine */
+
+/* After the tiles have been updated: visits their runs, and gives back what is no longer under one. */
+void cf_coupled_follow_tiles(cf_coupled *l);
+
+/* From c, free and held: inverse, seams, and the band. CF_NO_MEMORY. */
+cf_status cf_coupled_finish(cf_coupled *l);
+
+/* e from e = 0: a red-black sweep, and `band` sweeps over the band. */
+void cf_coupled_smooth_first(const cf_coupled *l, float omega, int band);
+
+/* `band` sweeps over the band, then `sweeps` full ones that begin with colour `first`. */
+void cf_coupled_smooth(const cf_coupled *l, float omega, int band, int sweeps, int first);
+
+/* coarse->r = sums of the residual of `l`. */
+void cf_coupled_restrict(const cf_coupled *l, const cf_coupled *coarse);
+
+/* e += interpolated coarse->e. */
+void cf_coupled_prolong(const cf_coupled *coarse, const cf_coupled *l);
+
+/* Copies the outermost layers of f to the ghosts across periodic seams. */
+void cf_coupled_wrap(const cf_coupled *l, float *f);
+
+/* Whether cell p has an equation. */
+static inline bool cf_coupled_has(const cf_coupled *l, const ptrdiff_t p) { return l->inverse[p] > 0; }
+
+static inline int cf_coupled_threads(const cf_coupled *l) {
+  return l->tiles != NULL ? cf_tiles_threads(l->tiles, l->threads) : cf_sweep_threads(&l->box, l->threads);
+}
+
+/* With CF_TILE_ROWS and CF_TILE_RUNS of grid/tiles.h. */
+#define CF_PARALLEL_COUPLED(l, v)                                                 \
+  CF_PRAGMA(omp parallel for schedule(static) num_threads(cf_coupled_threads(l))) \
+  for (ptrdiff_t v = 0; v < (l)->rows; ++v)
+
+#endif

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT */
+#include "solve/pockets.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+
+void cf_pockets_clear(cf_pockets *q, const cf_coupled *l) {
+  cf_free(q->united);
+  cf_free(q->sum);
+  cf_free(q->mean);
+  cf_free(q->cells);
+  if (q->label != NULL) cf_pages_release(q->label - l->box.first, (size_t)l->box.size * sizeof *q->label);
+  *q = (cf_pockets){0};
+}
+
+/* --- finding ------------------------------------------------------------------------------------------ */
+
+static int32_t root_of(int32_t *united, int32_t label) {
+  while (united[label] != label) {
+    united[label] = united[united[label]];
+    label = united[label];
+  }
+  return label;
+}
+
+static void unite(int32_t *united, const int32_t a, const int32_t b) {
+  const int32_t ra = root_of(united, a), rb = root_of(united, b);
+  if (ra < rb)
+    united[rb] = ra;
+  else
+    united[ra] = rb;
+}
+
+static cf_status make_room(cf_pockets *q, const ptrdiff_t more) {
+  if (q->labels + more <= q->room) return CF_OK;
+  const ptrdiff_t room = 2 * q->room + more;
+  int32_t *united;
+  CF_TRY(CF_NEW(&united, room));
+  if (q->united != NULL) memcpy(united, q->united, (size_t)q->labels * sizeof *united);
+  cf_free(q->united);
+  q->united = united;
+  q->room = room;
+  return CF_OK;
+}
+
+/* Labels of a run; 0 is no part. */
+static void label_run(cf_pockets *q, const cf_coupled *l, const cf_run *run, const ptrdiff_t row) {
+  for (int i = run->low; i < run->high; ++i) {
+    const ptrdiff_t p = row + i;
+    q->label[p] = 0;
+    if (!cf_coupled_has(l, p)) continue;
+    if (i > 0 && l->c[0][p] > 0) {
+      q->label[p] = q->label[p - 1];
+      continue;
+    }
+    q->united[q->labels] = (int32_t)q->labels;
+    q->label[p] = (int32_t)q->labels++;
+  }
+}
+
+static void unite_run(const cf_pockets *q, const cf_coupled *l, const cf_run *run, const int at[3]) {
+  const ptrdiff_t row = cf_box_at(&l->box, 0, at[1], at[2]);
+  for (int a = 0; a < l->dim; ++a) {
+    if (a == 0 ? !l->periodic[0] : at[a] == 0 && !l->periodic[a]) continue;
+    const bool seam = a == 0 || at[a] == 0;
+    const ptrdiff_t to = seam ? (l->box.n[a] - 1) * l->box.stride[a] : -l->box.stride[a];
+    const int end = a == 0 ? CF_MIN(run->high, 1) : run->high; /* along x only the seam is left */
+    for (int i = run->low; i < end; ++i)
+      if (l->c[a][row + i] > 0) unite(q->united, q->label[row + i], q->label[row + i + to]);
+  }
+}
+
+/* The parts whose diagonal is made of couplings alone become pockets; united: from a label to its pocket or -1. */
+static cf_status number_pockets(cf_pockets *q, const cf_coupled *l) {
+  bool *fixed;
+  CF_TRY(CF_NEW(&fixed, q->labels));
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run)
+        for (int i = run->low; i < run->high; ++i) {
+          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+          if (l->free[p] + l->held[p] > 0) fixed[root_of(q->united, q->label[p])] = true;
+        }
+  q->count = 0;
+  for (ptrdiff_t v = 0; v < q->labels; ++v) q->united[v] = root_of(q->united, (int32_t)v);
+  int32_t *number = q->united; /* roots come before what is united with them */
+  fixed[0] = true;
+  for (ptrdiff_t v = 0; v < q->labels; ++v) {
+    const int32_t root = number[v];
+    if (root == v)
+      number[v] = fixed[v] ? -1 : q->count++;
+    else
+      number[v] = number[root];
+  }
+  cf_free(fixed);
+  cf_free(q->sum);
+  cf_free(q->mean);
+  cf_free(q->cells);
+  q->sum = q->mean = q->cells = NULL;
+  CF_TRY(CF_NEW(&q->sum, q->count));
+  CF_TRY(CF_NEW(&q->mean, q->count));
+  return CF_NEW(&q->cells, q->count);
+}
+
+cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, const bool fixed) {
+  q->count = 0;
+  if (fixed) return CF_OK;
+  if (q->label == NULL) {
+    void *pages;
+    CF_TRY(cf_pages_reserve(&pages, (size_t)l->box.size * sizeof *q->label, l->tiles == NULL));
+    q->label = (int32_t *)pages + l->box.first;
+  } else if (l->tiles != NULL) {
+    cf_tiles_follow_bytes(l->tiles, q->followed, q->label, sizeof *q->label);
+  }
+  if (l->tiles != NULL) q->followed = l->tiles->updates;
+  q->labels = 0;
+  CF_TRY(make_room(q, 1));
+  q->united[q->labels++] = 0;
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run) {
+        CF_TRY(make_room(q, run->high - run->low));
+        label_run(q, l, run, cf_box_at(&l->box, 0, j, k));
+      }
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run) unite_run(q, l, run, (int[]){0, j, k});
+  CF_TRY(number_pockets(q, l));
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run)
+        for (int i = run->low; i < run->high; ++i) {
+          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+          if (q->united[q->label[p]] >= 0) q->cells[q->united[q->label[p]]] += 1;
+        }
+  return CF_OK;
+}
+
+/* --- means -------------------------------------------------------------------------------------------- */
+
+static void sum_up(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
+  for (int v = 0; v < q->count; ++v) q->sum[v] = 0;
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run)
+        for (int i = run->low; i < run->high; ++i) {
+          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+          const int32_t pocket = q->united[q->label[p]];
+          if (pocket >= 0) q->sum[pocket] += (double)f.at[p];
+        }
+}
+
+/* f -= (sum - kept)/cells on every pocket. */
+static void shift(const cf_pockets *q, const cf_coupled *l, const bool kept, const cf_cell f) {
+  CF_PARALLEL_COUPLED (l, v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run)
+        for (int i = run->low; i < run->high; ++i) {
+          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+          const int32_t pocket = q->united[q->label[p]];
+          if (pocket >= 0)
+            f.at[p] -= (cf_real)(q->sum[pocket] / q->cells[pocket] - (kept ? q->mean[pocket] : 0));
+        }
+}
+
+void cf_pockets_remove_means(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
+  if (q->count == 0) return;
+  sum_up(q, l, f);
+  shift(q, l, false, f);
+}
+
+void cf_pockets_keep_means(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
+  if (q->count == 0) return;
+  sum_up(q, l, f);
+  for (int v = 0; v < q->count; ++v) q->mean[v] = q->sum[v] / q->cells[v];
+}
+
+void cf_pockets_restore_means(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
+  if (q->count == 0) return;
+  sum_up(q, l, f);
+  shift(q, l, true, f);
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The parts of a region that are cut off from each other, and those of them whose level nothing fixes: no alpha, no known
+ * value. Each such pocket has the constant as its own null space.
+ *
+ * Parts are found row by row: cells of a row that are joined share a label, labels that meet in another axis are united
+ * (union-find), in a fixed order.
+ */
+#ifndef CF_SOLVE_POCKETS_H
+#define CF_SOLVE_POCKETS_H
+
+#include "solve/coupled.h"
+
+typedef struct cf_pockets {
+  int count; /* pockets */
+  ptrdiff_t labels, room;
+  int32_t *united;    /* label -> another label of the same part; after finding, label -> pocket, or -1 */
+  int32_t *label;     /* of every cell, in pages like the level's */
+  double *sum, *mean; /* one a pocket (at most as many as labels) */
+  double *cells;
+  int64_t followed; /* the update of the tiles that the labels are right for */
+} cf_pockets;
+
+/* `fixed` : alpha is nowhere 0, there is nothing to find. CF_NO_MEMORY. */
+cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, bool fixed);
+void cf_pockets_clear(cf_pockets *q, const cf_coupled *l); /* a zeroed one is fine */
+
+/* Subtracts from f its mean over every pocket. */
+void cf_pockets_remove_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);
+
+/* Keeps the means of f, and shifts f back to the means kept. */
+void cf_pockets_keep_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);
+void cf_pockets_restore_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);
+
+#endif

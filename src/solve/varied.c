@@ -1,0 +1,352 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Taking coefficients, making levels, and the cycle over them.
+ */
+#include "solve/varied.h"
+
+#include <math.h>
+
+#include "base/mem.h"
+#include "grid/halo.h"
+#include "solve/varied_part.h"
+
+/* Sweeps over the band near walls before and after the coarse correction, and full sweeps after it below the finest
+ * level, where they cost little. */
+#define BAND_SWEEPS   2
+#define COARSE_SWEEPS 3
+/* On a coarsest level that is not eliminated because little is left to smooth there. */
+#define LAST_SWEEPS 4
+/* Elimination may take so much for every cell of the finest level, and so much at all. */
+#define WORK_PER_CELL 100.0
+#define WORK_MOST     3e7
+#define WORK_ASKED    1e9 /* where the caller limits the levels */
+#define OMEGA         1.15f
+
+/* --- memory ------------------------------------------------------------------------------------------- */
+
+cf_status cf_varied_create(cf_varied **v, const cf_helmholtz *A) {
+  CF_TRY(CF_NEW(v, 1));
+  (*v)->A = A;
+  return CF_OK;
+}
+
+static void release(cf_varied *v) {
+  const cf_box *b = &v->A->grid.box;
+  if (v->levels > 0) cf_pockets_clear(&v->pockets, &v->level[0]);
+  for (int l = 0; l < v->levels; ++l) cf_coupled_destroy(&v->level[l]);
+  v->levels = 0;
+  cf_band_destroy(&v->band);
+  cf_cell_destroy(&v->own_alpha, b);
+  cf_face_destroy(&v->own_beta, b);
+  cf_cell_destroy(&v->r, b);
+  cf_cell_destroy(&v->p, b);
+  cf_cell_destroy(&v->Ap, b);
+  for (int a = 0; a < 3; ++a) {
+    cf_free(v->lo[a]);
+    cf_free(v->hi[a]);
+    v->lo[a] = v->hi[a] = NULL;
+  }
+  cf_free(v->sums);
+  v->sums = NULL;
+}
+
+void cf_varied_destroy(cf_varied *v) {
+  if (v == NULL) return;
+  release(v);
+  cf_free(v);
+}
+
+/* The axes that still have the smallest cells and more than one of them. */
+static bool axes_to_coarsen(cf_coupled *l, double width[3]) {
+  double smallest = INFINITY;
+  for (int a = 0; a < l->dim; ++a)
+    if (l->box.n[a] > 1) smallest = CF_MIN(smallest, width[a]);
+  for (int a = 0; a < l->dim; ++a) {
+    l->coarsened[a] = l->box.n[a] > 1 && width[a] <= 1.5 * smallest;
+    if (l->coarsened[a]) width[a] *= 2;
+  }
+  return smallest < INFINITY;
+}
+
+static cf_status levels_create(cf_varied *v) {
+  const cf_helmholtz *A = v->A;
+  bool periodic[3] = {false, false, false};
+  double width[3] = {1, 1, 1};
+  for (int a = 0; a < A->grid.box.dim; ++a) periodic[a] = A->walls.kind[a][0] == CF_WALL_PERIODIC;
+  const double most = CF_MIN(WORK_PER_CELL * (double)cf_box_cells(&A->grid.box), WORK_MOST);
+  v->levels = 1; /* counted first, so that a failure within frees it */
+  CF_TRY(cf_coupled_create(&v->level[0], &A->grid.box, periodic, A->grid.threads, v->tiles));
+  while (v->levels < CF_LEVELS_MAX && (A->wanted == 0 || v->levels < A->wanted)) {
+    cf_coupled *l = &v->level[v->levels - 1];
+    if (cf_band_work(&l->box, l->periodic) <= most || !axes_to_coarsen(l, width)) break;
+    ++v->levels;
+    CF_TRY(cf_coarsen_create(l, &v->level[v->levels - 1]));
+  }
+  return CF_OK;
+}
+
+static cf_status cell_create(const cf_varied *v, cf_cell *f) {
+  if (f->at != NULL) return CF_OK;
+  return v->tiles != NULL ? cf_tiles_cell_create(v->tiles, f) : cf_cell_create(f, &v->A->grid.box);
+}
+
+static cf_status face_create(const cf_varied *v, cf_face *f) {
+  if (f->at[0] != NULL) return CF_OK;
+  return v->tiles != NULL ? cf_tiles_face_create(v->tiles, f) : cf_face_create(f, &v->A->grid.box);
+}
+
+static cf_status make(cf_varied *v) {
+  CF_TRY(levels_create(v));
+  CF_TRY(cell_create(v, &v->r));
+  CF_TRY(cell_create(v, &v->p));
+  CF_TRY(cell_create(v, &v->Ap));
+  for (int a = 0; a < v->A->grid.box.dim; ++a) {
+    const cf_axis *axis = &v->A->level[0].axis[a];
+    CF_TRY(CF_NEW(&v->lo[a], axis->n));
+    CF_TRY(CF_NEW(&v->hi[a], axis->n));
+    for (int i = 0; i < axis->n; ++i) {
+      v->lo[a][i] = (cf_real)axis->lo1[i];
+      v->hi[a][i] = (cf_real)axis->hi1[i];
+    }
+  }
+  return CF_NEW(&v->sums, 2 * cf_box_rows(&v->A->grid.box));
+}
+
+/* Levels and fields for this region's tiles. */
+static cf_status prepare(cf_varied *v, const cf_region *region) {
+  const cf_tiles *tiles = region != NULL ? region->tiles : NULL;
+  if (v->levels > 0 && v->tiles != tiles) release(v);
+  v->tiles = tiles;
+  v->region = region;
+  if (v->levels == 0) {
+    const cf_status s = make(v);
+    if (s != CF_OK) {
+      release(v);
+      return s;
+    }
+  }
+  if (tiles == NULL) return CF_OK;
+  const cf_cell *cells[] = {&v->r, &v->p, &v->Ap, &v->own_alpha};
+  for (int f = 0; f < 4; ++f)
+    if (cells[f]->at != NULL)
+      cf_tiles_follow_bytes(tiles, v->level[0].followed, cells[f]->at, sizeof(cf_real));
+  for (int a = 0; a < 3; ++a)
+    if (v->own_beta.at[a] != NULL)
+      cf_tiles_follow_bytes(tiles, v->level[0].followed, v->own_beta.at[a], sizeof(cf_real));
+  cf_coupled_follow_tiles(&v->level[0]);
+  for (ptrdiff_t r = 0; r < 2 * cf_box_rows(&v->A->grid.box); ++r) v->sums[r] = 0;
+  return CF_OK;
+}
+
+/* --- coefficients ------------------------------------------------------------------------------------- */
+
+/* What the finest level is filled from. */
+typedef struct filling {
+  cf_varied *v;
+  const cf_coefficients *c;
+  double scale, h2;
+} filling;
+
+static double beta_of(const cf_coefficients *c, const int a, const ptrdiff_t p) {
+  return c->beta_at != NULL ? (double)c->beta_at->at[a][p] : c->beta;
+}
+
+static int kind_of(const cf_varied *v, const ptrdiff_t p) {
+  return v->region != NULL ? v->region->kind[p] : CF_CELL_INSIDE;
+}
+
+/* One face of a cell inside: `next` is the kind beyond it, -1 for a wall of the box. Returns the coupling (0: closed or
+ * known); what a known value adds to the diagonal goes to `held`, and to `surplus` what the tables of walls do not know. */
+static double face_of(const filling *f, const int next, const double beta, const double table, double *held,
+                      double *surplus) {
+  if (next == CF_CELL_INSIDE) return beta * f->h2;
+  if (next < 0) *held += beta * table;
+  if (next > CF_CELL_INSIDE) {
+    *held += 2 * beta * f->h2;
+    *surplus += 2 * beta * f->h2;
+  }
+  return 0;
+}
+
+static void fill_cell(const filling *f, const int at[3], const ptrdiff_t p) {
+  cf_varied *v = f->v;
+  cf_coupled *l = &v->level[0];
+  const bool inside = kind_of(v, p) == CF_CELL_INSIDE;
+  const double alpha = !inside ? 0 : f->c->alpha_at != NULL ? (double)f->c->alpha_at->at[p] : f->c->alpha;
+  double held = 0, surplus = 0;
+  for (int a = 0; a < l->dim; ++a) {
+    const int n = l->box.n[a];
+    const ptrdiff_t s = l->box.stride[a];
+    for (int side = 0; side < 2; ++side) {
+      const bool end = at[a] == (side ? n - 1 : 0), wall = end && !(v->A->level[0].axis[a].periodic && n > 1);
+      const ptrdiff_t face = side ? p + s : p;
+      const ptrdiff_t other = !end ? (side ? p + s : p - s) : side ? p - (n - 1) * s : p + (n - 1) * s;
+      const int next = wall ? -1 : kind_of(v, other);
+      const double beta = inside ? beta_of(f->c, a, face) : 0;
+      const double table = v->A->level[0].axis[a].periodic ? 0
+                           : side                          ? (double)v->hi[a][n - 1]
+                                                           : (double)v->lo[a][0];
+      const double c = inside ? face_of(f, next, beta, table, &held, &surplus) : 0;
+      if (side == 0) l->c[a][p] = (float)(f->scale * c);
+      if (v->own_beta.at[0] != NULL && (side == 0 || end))
+        v->own_beta.at[a][face] = (cf_real)(wall || c > 0 ? beta : 0);
+    }
+  }
+  l->free[p] = (float)(f->scale * alpha);
+  l->held[p] = (float)(f->scale * held);
+  if (v->alpha.at != NULL && v->alpha.at == v->own_alpha.at) v->own_alpha.at[p] = (cf_real)(alpha + surplus);
+}
+
+/* The largest alpha and beta that the equation meets, and the least alpha. */
+static void find_range(const filling *f, double *alpha, double *least, double *beta) {
+  const cf_coupled *l = &f->v->level[0];
+  double largest = f->c->alpha_at != NULL ? 0 : f->c->alpha,
+         lowest = f->c->alpha_at != NULL ? INFINITY : f->c->alpha;
+  double widest = f->c->beta_at != NULL ? 0 : f->c->beta;
+#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(l)) reduction(max                \
+                                                                                       : largest, widest) \
+    reduction(min                                                                                         \
+              : lowest)
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run)
+        for (int i = run->low; i < run->high; ++i) {
+          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+          if (kind_of(f->v, p) != CF_CELL_INSIDE) continue;
+          if (f->c->alpha_at != NULL) {
+            const double a = (double)f->c->alpha_at->at[p];
+            largest = a > largest ? a : largest;
+            lowest = a < lowest ? a : lowest;
+          }
+          for (int a = 0; a < l->dim && f->c->beta_at != NULL; ++a) {
+            const double b = (double)f->c->beta_at->at[a][p];
+            widest = b > widest ? b : widest;
+          }
+        }
+  *alpha = largest;
+  *least = lowest;
+  *beta = widest;
+}
+
+static cf_status choose_fields(cf_varied *v, const cf_coefficients *c) {
+  v->alpha = (cf_cell){NULL};
+  v->alpha_number = c->alpha;
+  v->beta_number = c->beta;
+  v->given_beta = c->beta_at != NULL ? *c->beta_at : (cf_face){{NULL, NULL, NULL}};
+  if (c->region != NULL) {
+    CF_TRY(cell_create(v, &v->own_alpha));
+    v->alpha = v->own_alpha;
+  } else if (c->alpha_at != NULL) {
+    v->alpha = *c->alpha_at;
+  }
+  if (c->beta_at != NULL)
+    for (int a = 0; a < v->A->grid.box.dim; ++a)
+      cf_halo_fill(&v->A->grid.box, &v->A->level[0].wrap, 0, a, c->beta_at->at[a]);
+  if (c->region == NULL && c->beta_at != NULL) {
+    cf_face_destroy(&v->own_beta, &v->A->grid.box);
+    v->beta = *c->beta_at;
+    return CF_OK;
+  }
+  CF_TRY(face_create(v, &v->own_beta));
+  v->beta = v->own_beta;
+  return CF_OK;
+}
+
+/* Below the stiffness of 3 sweeps alone do; every level has a quarter of the one before. */
+static int depth_for(const cf_varied *v, const double stiffness) {
+  int depth = 1;
+  for (double s = stiffness; depth < v->levels && s > CF_STIFF_ENOUGH; s /= 4) ++depth;
+  return depth;
+}
+
+static bool is_eliminated(const cf_varied *v) {
+  const cf_coupled *l = &v->level[v->depth - 1];
+  const double most = v->A->wanted > 0 ? WORK_ASKED : WORK_MOST;
+  return v->depth == v->levels && cf_band_work(&l->box, l->periodic) <= most;
+}
+
+cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficients *c) {
+  if (c->region != NULL)
+    for (int a = 0; a < 3; ++a)
+      if (c->region->grid.box.n[a] != A->grid.box.n[a] ||
+          c->region->grid.box.stride[a] != A->grid.box.stride[a])
+        return cf_fail(CF_BAD_ARGUMENT, "a region of %d x %d x %d cells for a solver of %d x %d x %d",
+                       c->region->grid.box.n[0], c->region->grid.box.n[1], c->region->grid.box.n[2],
+                       A->grid.box.n[0], A->grid.box.n[1], A->grid.box.n[2]);
+  v->A = A;
+  CF_TRY(prepare(v, c->region));
+  CF_TRY(choose_fields(v, c));
+  filling f = {v, c, 1, 1 / (A->grid.h * A->grid.h)};
+  double alpha, least, beta;
+  find_range(&f, &alpha, &least, &beta);
+  const double couplings = 2 * A->grid.box.dim * beta * f.h2;
+  f.scale = alpha + couplings > 0 ? 1 / CF_MAX(alpha + couplings, 1e-300) : 1;
+  cf_coupled *l = &v->level[0];
+  CF_PARALLEL_COUPLED (l, r)
+    CF_TILE_ROWS (l, r, j, k)
+      CF_TILE_RUNS (l, r, run)
+        for (int i = run->low; i < run->high; ++i)
+          fill_cell(&f, (int[]){i, j, k}, cf_box_at(&l->box, i, j, k));
+  CF_TRY(cf_coupled_finish(l));
+  v->depth = depth_for(v, least > 0 ? couplings / least : INFINITY);
+  CF_TRY(cf_pockets_find(&v->pockets, l, least > 0));
+  for (int at = 1; at < v->depth; ++at) CF_TRY(cf_coarsen(&v->level[at - 1], &v->level[at]));
+  return is_eliminated(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;
+}
+
+int cf_varied_depth(const cf_varied *v) { return v->depth; }
+
+double cf_varied_wall_beta(const cf_varied *v, const int axis, const ptrdiff_t face) {
+  return (double)v->beta.at[axis][face];
+}
+
+void cf_varied_add_held(const cf_varied *v, const cf_cell b) {
+  if (v->region == NULL) return;
+  const cf_coupled *l = &v->level[0];
+  const cf_helmholtz *A = v->A;
+  const cf_real *value = v->region->value.at;
+  const double twice = 2 / (A->grid.h * A->grid.h);
+  CF_PARALLEL_COUPLED (l, r)
+    CF_TILE_ROWS (l, r, j, k)
+      CF_TILE_RUNS (l, r, run)
+        for (int i = run->low; i < run->high; ++i) {
+          const int at[3] = {i, j, k};
+          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+          if (v->region->kind[p] != CF_CELL_INSIDE) continue;
+          double sum = 0;
+          for (int a = 0; a < l->dim; ++a)
+            for (int side = 0; side < 2; ++side) {
+              const int n = l->box.n[a];
+              const ptrdiff_t s = l->box.stride[a];
+              const bool end = at[a] == (side ? n - 1 : 0);
+              if (end && !l->periodic[a]) continue;
+              const ptrdiff_t q = !end ? (side ? p + s : p - s) : side ? p - (n - 1) * s : p + (n - 1) * s;
+              if (v->region->kind[q] != CF_CELL_HELD) continue;
+              sum += (v->given_beta.at[0] != NULL ? (double)v->given_beta.at[a][side ? p + s : p]
+                                                  : v->beta_number) *
+                     (double)value[q];
+            }
+          b.at[p] += (cf_real)(twice * sum);
+        }
+}
+
+/* --- the cycle ---------------------------------------------------------------------------------------- */
+
+void cf_varied_cycle(const cf_varied *v, const int at) {
+  const cf_coupled *l = &v->level[at];
+  if (at == v->depth - 1) {
+    if (is_eliminated(v)) {
+      cf_band_solve(&v->band, l);
+    } else {
+      cf_coupled_smooth_first(l, 1, 0);
+      cf_coupled_smooth(l, 1, 0, at == 0 ? 1 : LAST_SWEEPS, 0);
+    }
+    return;
+  }
+  const float omega = v->careful ? 1 : OMEGA;
+  cf_coupled_smooth_first(l, omega, BAND_SWEEPS);
+  cf_coupled_restrict(l, &v->level[at + 1]);
+  cf_varied_cycle(v, at + 1);
+  cf_coupled_prolong(&v->level[at + 1], l);
+  cf_coupled_smooth(l, omega, BAND_SWEEPS, at == 0 || v->careful ? 1 : COARSE_SWEEPS, v->careful ? 1 : 0);
+}

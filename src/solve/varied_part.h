@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the files of the varied path share.
+ */
+#ifndef CF_SOLVE_VARIED_PART_H
+#define CF_SOLVE_VARIED_PART_H
+
+#include "solve/band.h"
+#include "solve/coarsen.h"
+#include "solve/multigrid.h"
+#include "solve/pockets.h"
+#include "solve/varied.h"
+
+struct cf_varied {
+  const cf_helmholtz *A;
+  const cf_region *region; /* NULL: the whole box */
+  const cf_tiles *tiles;   /* of the region */
+  cf_coupled level[CF_LEVELS_MAX];
+  int levels, depth; /* made; in use */
+  bool careful;      /* the cycle is symmetric: slower, and never led astray */
+  cf_band band;
+  cf_pockets pockets;
+
+  /* The operator in the precision of the state: alpha and what faces with known values add (a field or, where `at` is
+   * NULL, a number), beta on faces (closed ones 0). Fields of the caller or our own. */
+  cf_cell alpha, own_alpha;
+  cf_face beta, own_beta;
+  double alpha_number, beta_number;
+  cf_face given_beta;     /* the caller's; NULL: the number */
+  cf_real *lo[3], *hi[3]; /* 1/h^2 along each axis, with the walls of the box (level.h) */
+
+  cf_cell r, p, Ap; /* of conjugate gradients */
+  double *sums;     /* two for every row of the box; rows without tiles are 0 */
+};
+
+/* level[at].e = one V-cycle on level[at].r. */
+void cf_varied_cycle(const cf_varied *v, int at);
+
+#endif
