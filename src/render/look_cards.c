@@ -137,7 +137,7 @@ static void dusk(const cf_look *look, const cf_exhibit *e, cf_studio *s) {
     const double sharp = sharp_distance(e->flakes, &stand, (double)look->width / look->height);
     if (isnan(look->aim[1])) s->camera.aim[1] = eye[1] + sharp;
     s->camera.focus = cf_or(look->focus, sharp);
-    s->camera.aperture = cf_or(look->aperture, 0.04 * s->camera.focus);
+    s->camera.aperture = cf_or(look->aperture, 0.025 * s->camera.focus);
   }
   cf_look_key(look, 150, 24, (cf_vec){1.25f, 1.12f, 0.95f}, 3, s);
   s->light[s->lights++] = (cf_light){cf_light_toward(-70, 38), {0.30f, 0.46f, 0.80f}, 0.25f};
@@ -160,7 +160,7 @@ static cf_status take(const cf_look *look, const cf_studio *s, const cf_cards *a
                                 .haze_colour = s->haze.colour};
   cf_film film;
   CF_TRY(cf_studio_expose(s, &film));
-  const double shutter = look->shutter > 0 ? look->shutter : 1.0 / 500;
+  const double shutter = look->shutter > 0 ? look->shutter : 1.0 / 1000;
   cf_status status = cf_cards_draw(all, &light, &s->camera, shutter, look->threads, &film);
   if (status == CF_OK) status = cf_film_develop(&film, &how, c);
   cf_film_destroy(&film);
