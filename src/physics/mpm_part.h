@@ -53,16 +53,19 @@ CF_SMALL void cf_mpm_eight_load(const int dim, const cf_mpm *m, const cf_block *
   cf_mpm_load(e->n, m, m->at.plastic, 1, first, &e->plastic);
   cf_lanes kind;
   cf_mpm_load(e->n, m, m->at.material, 1, first, &kind);
+  cf_real of[5][CF_WIDE];
   for (int l = 0; l < CF_WIDE; ++l) {
     const cf_mpm_material *a = cf_mpm_material_of(m, kind[l]);
     const cf_real harder =
         a->hardening > 0 ? (cf_real)exp(a->hardening * (1 - (double)e->plastic[l])) : (cf_real)1;
-    e->mu[l] = harder * (cf_real)a->mu;
-    e->lambda[l] = harder * (cf_real)a->lambda;
-    e->chi[l] = (cf_real)a->swelling;
-    e->density[l] = (cf_real)a->density;
-    e->water_per_volume[l] = (cf_real)a->water;
+    of[0][l] = harder * (cf_real)a->mu;
+    of[1][l] = harder * (cf_real)a->lambda;
+    of[2][l] = (cf_real)a->swelling;
+    of[3][l] = (cf_real)a->density;
+    of[4][l] = (cf_real)a->water;
   }
+  e->mu = CF_LANES_AT(of[0]), e->lambda = CF_LANES_AT(of[1]), e->chi = CF_LANES_AT(of[2]);
+  e->density = CF_LANES_AT(of[3]), e->water_per_volume = CF_LANES_AT(of[4]);
 }
 
 /* Whether all of the eight obey one law, and which. */
