@@ -43,7 +43,7 @@ enum { CF_GEL_TRANSFER_APIC, CF_GEL_TRANSFER_FLIP };
   P(spin, number, "0", "rad/s", "(-inf, inf)", "Rotation at time 0 about `axis` through its middle")         \
   P(saturation, profile, "0", "", "", "Water at time 0: S, an expression in x, y, z")                        \
   P(young, number, "40", "Pa", "(0, inf)", "Young's modulus E of the dry body")                              \
-  P(poisson, number, "0.4", "", "[0, 0.5)", "Poisson's ratio nu")                                           \
+  P(poisson, number, "0.4", "", "[0, 0.5)", "Poisson's ratio nu")                                            \
   P(law, word, "corotated", "", CF_WORDS(CF_GEL_LAW_WORDS), "Elastic law: fixed corotated or neo-Hookean")   \
   P(swelling, number, "10", "Pa", "[0, inf)", "chi of eq. 32: the swelling stress is chi S")                 \
   P(hardening, number, "0", "", "[0, inf)",                                                                  \

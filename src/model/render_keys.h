@@ -8,12 +8,12 @@
 
 #include "base/param.h"
 
-#define CF_RENDER_STYLE_WORDS(W)                                                                        \
-  W(AUTO, auto)                                                                                         \
-  W(FIELD, field)                                                                                       \
-  W(INK, ink)                                                                                           \
-  W(SMOKE, smoke) W(CRYSTAL, crystal) W(CORAL, coral) W(MESH, mesh) W(GEL, gel) W(PARTICLES, particles) \
-      W(CARDS, cards)
+#define CF_RENDER_STYLE_WORDS(W) \
+  W(AUTO, auto)                  \
+  W(FIELD, field)                \
+  W(INK, ink)                    \
+  W(SMOKE, smoke)                \
+  W(CRYSTAL, crystal) W(CORAL, coral) W(MESH, mesh) W(GEL, gel) W(PARTICLES, particles) W(CARDS, cards)
 
 #define CF_RENDER_UP_WORDS(W) W(AUTO, auto) W(X, x) W(Y, y) W(Z, z)
 

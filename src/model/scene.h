@@ -229,7 +229,8 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(cattaneo, integer, CF_REQUIRED, "", "", "Version of the scene format: 1")                               \
   P(title, text, "", "", "", "A line about the scene")                                                      \
   P(model, word, CF_REQUIRED, "", CF_WORDS(CF_MODEL_WORDS),                                                 \
-    "What is computed: tracer (scalars in a given flow), flow (a fluid and what it carries), phase (crystals), snowfall "     \
+    "What is computed: tracer (scalars in a given flow), flow (a fluid and what it carries), phase "        \
+    "(crystals), snowfall "                                                                                 \
     "(flakes in the wind), gel (bodies that take up water and swell)")                                      \
   P(let, constants, CF_NONE, "", "",                                                                        \
     "Names for numbers, for use in expressions and wherever a number stands")                               \

@@ -196,8 +196,7 @@ static cf_status set_operator(cf_diffuse *d, const cf_flux_law *law) {
     alpha_where_held(d);
   else if (law->delta == d->delta && law->per == d->per)
     return CF_OK; /* the same matrix as last time */
-  d->delta = law->delta;
-  d->per = law->per;
+  d->delta = -1; /* until all is well: after a failure the operator must be set again */
   const double beta = law->delta * law->per;
   cf_coefficients c = {.alpha = 1, .beta = d->beta.at[0] != NULL ? 0 : beta * d->p.k.value};
   if (d->beta.at[0] != NULL) {
@@ -212,7 +211,10 @@ static cf_status set_operator(cf_diffuse *d, const cf_flux_law *law) {
     c.alpha_at = &d->alpha;
   else if (d->c_varies)
     c.alpha_at = &d->capacity;
-  return cf_helmholtz_set(d->A, &c);
+  CF_TRY(cf_helmholtz_set(d->A, &c));
+  d->delta = law->delta;
+  d->per = law->per;
+  return CF_OK;
 }
 
 /* b += C f/(1 - f) value, to match alpha. */

@@ -175,7 +175,7 @@ static void a_field_that_is_not_there_is_answered_with_those_that_are(void **sta
 
 static void a_stalled_solve_is_a_warning_of_its_step(void **state) {
   (void)state;
-  static const char *const set[] = {"solver.max_iterations=1", "solver.tolerance=1e-15", "diffusion.k=100",
+  static const char *const set[] = {"solver.max_iterations=1", "solver.tolerance=1e-15", "diffusion.k=1",
                                     "diffusion.scheme=sdirk2"};
   const one o = open_with(4, set);
   OK(cf_sim_step(o.sim, NULL));
