@@ -14,11 +14,11 @@
 struct cf_mesh;
 
 /* Where the time of a step goes; S(UPPER, as tables say it). */
-#define CF_STAGE_LIST(S)                                                                                    \
-  S(ADVECT, "advection")                                                                                    \
-  S(PROJECT, "projection")                                                                                  \
-  S(DIFFUSE, "C-F diffusion") S(FORCE, "forces") S(TRANSFER, "particles and grid") S(REACT, "phase change") \
-      S(OTHER, "other")
+#define CF_STAGE_LIST(S)      \
+  S(ADVECT, "advection")      \
+  S(PROJECT, "projection")    \
+  S(DIFFUSE, "C-F diffusion") \
+  S(FORCE, "forces") S(TRANSFER, "particles and grid") S(REACT, "phase change") S(OTHER, "other")
 typedef enum cf_stage {
 #define CF_STAGE_ENUM(upper, text) CF_STAGE_##upper,
   CF_STAGE_LIST(CF_STAGE_ENUM)

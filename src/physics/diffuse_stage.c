@@ -196,7 +196,7 @@ static cf_status set_operator(cf_diffuse *d, const cf_flux_law *law) {
     alpha_where_held(d);
   else if (law->delta == d->delta && law->per == d->per)
     return CF_OK; /* the same matrix as last time */
-  d->delta = -1; /* until all is well: after a failure the operator must be set again */
+  d->delta = -1;  /* until all is well: after a failure the operator must be set again */
   const double beta = law->delta * law->per;
   cf_coefficients c = {.alpha = 1, .beta = d->beta.at[0] != NULL ? 0 : beta * d->p.k.value};
   if (d->beta.at[0] != NULL) {
