@@ -46,6 +46,7 @@ cf_status cf_sheet_command(cf_arguments *a);
 cf_status cf_bench_command(cf_arguments *a);
 cf_status cf_render_command(cf_arguments *a);
 cf_status cf_movie_command(cf_arguments *a);
+cf_status cf_atlas_command(cf_arguments *a);
 cf_status cf_help_command(cf_arguments *a);
 
 /* CF_BAD_USAGE, with the command that may have been meant. */

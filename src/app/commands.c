@@ -90,6 +90,14 @@ const cf_command cf_commands[] = {
      "is DIR/movie.mp4; it appears when it is whole.\n"
      "  " CF_PROGRAM " movie out/ink --fps 30",
      cf_movie_command},
+    {"atlas", "RUN...", 1, 256, BIT(OUTPUT) | BIT(RADIUS) | BIT(PIXELS) | BIT(FORCE) | BIT(HELP),
+     "make flakes for a snowfall of crystals that were grown in the plane",
+     "The last frame of each run of model phase becomes a flake of the atlas DIR/atlas.json: what it weighs "
+     "and measures, and beside it three pictures of 16 bits, of its colour and cover, its height, and its "
+     "normals. Crystals have no size of their own: --radius gives them one. A scene of model snowfall names "
+     "the atlas as snowfall.atlas.\n"
+     "  " CF_PROGRAM " atlas out/star out/fern -o atlas --radius '2 mm'",
+     cf_atlas_command},
     {"info", "FILE|DIR", 1, 1, BIT(HELP), "what a frame, a checkpoint or the folder of a run contains",
      "Scene, version and times; of every field the least and largest value, the sum and a checksum. Equal "
      "checksums, equal bits.\n"

@@ -23,7 +23,7 @@ const cf_option cf_option_table[CF_OPTIONS] = {
 #undef CF_OPTION_ROW
 };
 
-enum { THREADS_MAX = 1024, COLUMNS_MAX = 64, SIDE_MAX = 16384, LONG_ONLY = 256 };
+enum { THREADS_MAX = 1024, COLUMNS_MAX = 64, SIDE_MAX = 16384, PIXELS_MAX = 4096, LONG_ONLY = 256 };
 
 /* --- values ----------------------------------------------------------------------------------------------- */
 
@@ -63,16 +63,26 @@ cf_status cf_size_read(const char *text, double *bytes) {
   return CF_OK;
 }
 
-cf_status cf_duration_read(const char *text, double *seconds) {
+/* A number above 0 with a unit that becomes `wanted`; a plain number has that unit. */
+static bool read_quantity(const char *text, const char *wanted, double *value) {
   char *unit;
   cf_unit_change change = {1, 0};
-  *seconds = strtod(text, &unit);
+  *value = strtod(text, &unit);
   bool good = unit != text;
   unit += strspn(unit, " ");
-  if (good && *unit != '\0') good = cf_units_change(unit, "s", &change) == CF_OK;
-  *seconds *= change.scale;
-  if (good && isfinite(*seconds) && *seconds > 0) return CF_OK;
+  if (good && *unit != '\0') good = cf_units_change(unit, wanted, &change) == CF_OK;
+  *value *= change.scale;
+  return good && isfinite(*value) && *value > 0;
+}
+
+cf_status cf_duration_read(const char *text, double *seconds) {
+  if (read_quantity(text, "s", seconds)) return CF_OK;
   return cf_fail(CF_BAD_USAGE, "%s: must be a time above 0, like 3600, 90 min or 2h", text);
+}
+
+cf_status cf_length_read(const char *text, double *metres) {
+  if (read_quantity(text, "m", metres)) return CF_OK;
+  return cf_fail(CF_BAD_USAGE, "%s: must be a length above 0, like 1.5 mm or 2e-3 (m)", text);
 }
 
 static cf_status read_word(const char *name, const char *text, const char *words, int *index) {
@@ -148,6 +158,13 @@ static cf_status keep(cf_arguments *a, const int option, const char *value) {
       return read_size(a, value);
     case CF_OPTION_FPS:
       return read_rate(o->name, value, &a->fps);
+    case CF_OPTION_RADIUS:
+      if (cf_length_read(value, &a->radius) == CF_OK) break;
+      return cf_fail(CF_BAD_USAGE, "--radius %s", cf_status_sentence());
+    case CF_OPTION_PIXELS:
+      CF_TRY(read_whole(o->name, value, PIXELS_MAX, &whole));
+      a->pixels = (int)whole;
+      break;
     case CF_OPTION_FIELD:
       a->field = value;
       break;

@@ -26,6 +26,8 @@
   O(FRAME, "frame", 0, "N|last|all", "which frame; left out: the last")                                       \
   O(SIZE, "size", 0, "WxH", "width and height of the picture in pixels; left out: render.size of the scene")  \
   O(FPS, "fps", 0, "F", "frames a second; left out: 24")                                                      \
+  O(RADIUS, "radius", 0, "LENGTH", "what the radius of a crystal becomes: 1.5 mm, 2e-3 (m); left out: 1.5 mm")  \
+  O(PIXELS, "pixels", 0, "N", "sides of the pictures of a flake; left out: 256")                              \
   O(THREADS, "threads", 0, "N", "threads to use; left out: one a processor; the results are the same bits")   \
   O(UNTIL, "until", 0, "T", "stop at this simulated time, in s")                                              \
   O(STEPS, "steps", 0, "N", "stop after so many steps")                                                       \
@@ -78,6 +80,8 @@ typedef struct cf_arguments {
   const char *field, *style, *frame;
   int width, height;          /* of a picture, pixels; 0: not given */
   double fps;                 /* 0: not given */
+  double radius;              /* of a flake, m; 0: not given */
+  int pixels;                 /* of its pictures; 0: not given */
   const char *cells, *sigmas; /* lists as given, or NULL */
   int threads;                /* 0: not given */
   double until;               /* s; 0: not given */
@@ -98,6 +102,9 @@ void cf_arguments_clear(cf_arguments *a);
 
 /* "90 min" in s; a plain number is in s. CF_BAD_USAGE. */
 cf_status cf_duration_read(const char *text, double *seconds);
+
+/* "1.5 mm" in m; a plain number is in m. CF_BAD_USAGE. */
+cf_status cf_length_read(const char *text, double *metres);
 
 /* "512M" in bytes. CF_BAD_USAGE. */
 cf_status cf_size_read(const char *text, double *bytes);

@@ -59,11 +59,21 @@ static void add_texts(png_structp png, png_infop info, const int texts, const cf
 }
 
 typedef struct picture {
-  int width, height;
-  const uint8_t *rgb;
+  int width, height, channels, bits; /* bits of a channel: 8 or 16 */
+  const void *pixels;
   int texts;
   const cf_image_text *text;
 } picture;
+
+static int colour_type(const picture *p) {
+  if (p->channels == 1) return PNG_COLOR_TYPE_GRAY;
+  return p->channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA;
+}
+
+static bool low_byte_first(void) {
+  const uint16_t one = 1;
+  return *(const uint8_t *)&one == 1;
+}
 
 /* Everything between creating and destroying the writer; false after an error. */
 static bool write_chunks(png_structp png, png_infop info, FILE *file, const picture *p) {
@@ -71,12 +81,15 @@ static bool write_chunks(png_structp png, png_infop info, FILE *file, const pict
   errno = 0;
   png_init_io(png, file);
   png_set_compression_level(png, 6);
-  png_set_IHDR(png, info, (png_uint_32)p->width, (png_uint_32)p->height, 8, PNG_COLOR_TYPE_RGB,
+  png_set_IHDR(png, info, (png_uint_32)p->width, (png_uint_32)p->height, p->bits, colour_type(p),
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  /* Maps too: 16 bits without a word on colour are taken for linear light, and changed by who reads 8 of them. */
   png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   add_texts(png, info, p->texts, p->text);
   png_write_info(png, info);
-  for (int y = 0; y < p->height; ++y) png_write_row(png, p->rgb + (size_t)3 * (size_t)p->width * (size_t)y);
+  if (p->bits == 16 && low_byte_first()) png_set_swap(png);
+  const size_t row = (size_t)p->width * (size_t)(p->channels * p->bits / 8);
+  for (int y = 0; y < p->height; ++y) png_write_row(png, (const png_byte *)p->pixels + row * (size_t)y);
   png_write_end(png, info);
   return true;
 }
@@ -93,18 +106,16 @@ static bool write_png(FILE *file, const picture *p, reason *why) {
   return good;
 }
 
-cf_status cf_image_write(const char *path, const int width, const int height, const uint8_t *rgb,
-                         const int texts, const cf_image_text *text) {
-  const picture p = {width, height, rgb, texts, text};
+static cf_status write_whole(const char *path, const picture *p) {
   cf_draft draft;
   reason why = {""};
-  if (width < 1 || height < 1 || width > CF_IMAGE_SIDE_MAX || height > CF_IMAGE_SIDE_MAX)
-    return cf_fail(CF_BAD_ARGUMENT, "%s: a picture of %d x %d pixels: sides must be 1 to %d", path, width,
-                   height, CF_IMAGE_SIDE_MAX);
+  if (p->width < 1 || p->height < 1 || p->width > CF_IMAGE_SIDE_MAX || p->height > CF_IMAGE_SIDE_MAX)
+    return cf_fail(CF_BAD_ARGUMENT, "%s: a picture of %d x %d pixels: sides must be 1 to %d", path, p->width,
+                   p->height, CF_IMAGE_SIDE_MAX);
   CF_TRY(cf_draft_begin(&draft, path));
   FILE *file = fopen(draft.temporary.text, "wbe");
   if (file == NULL) return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", path, strerror(errno));
-  bool good = write_png(file, &p, &why);
+  bool good = write_png(file, p, &why);
   if (fclose(file) != 0 && good) {
     snprintf(why.text, sizeof why.text, "%s", strerror(errno));
     good = false;
@@ -112,6 +123,18 @@ cf_status cf_image_write(const char *path, const int width, const int height, co
   if (good) return cf_draft_keep(&draft);
   cf_draft_drop(&draft);
   return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", path, why.text);
+}
+
+cf_status cf_image_write(const char *path, const int width, const int height, const uint8_t *rgb,
+                         const int texts, const cf_image_text *text) {
+  return write_whole(path, &(picture){width, height, 3, 8, rgb, texts, text});
+}
+
+cf_status cf_image_write_deep(const char *path, const int width, const int height, const int channels,
+                              const uint16_t *values) {
+  if (channels != 1 && channels != 3 && channels != 4)
+    return cf_fail(CF_BAD_ARGUMENT, "%s: %d channels: must be 1, 3 or 4", path, channels);
+  return write_whole(path, &(picture){width, height, channels, 16, values, 0, NULL});
 }
 
 static cf_status read_as(const char *path, const png_uint_32 format, int *width, int *height,

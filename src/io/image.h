@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pictures as PNG files: 8 bits each of red, green and blue (sRGB), with text that says where they come from.
+ * Pictures as PNG files: 8 bits each of red, green and blue (sRGB), with text that says where they come from; and maps
+ * of 16 bits, which other programs read as numbers.
  * No time of day goes in: the same picture gives the same bytes.
  */
 #ifndef CF_IO_IMAGE_H
@@ -21,6 +22,10 @@ typedef struct cf_image_text {
  * is added. CF_CANNOT_WRITE, CF_BAD_ARGUMENT (sides), CF_NO_MEMORY. */
 cf_status cf_image_write(const char *path, int width, int height, const uint8_t *rgb, int texts,
                          const cf_image_text *text);
+
+/* The same for maps: `channels` values of 16 bits a pixel, 1 (grey), 3 (RGB) or 4 (RGB and cover, not multiplied by it).
+ */
+cf_status cf_image_write_deep(const char *path, int width, int height, int channels, const uint16_t *values);
 
 /* Reads a PNG file of any kind as RGB (on white where it is transparent). The pixels are the caller's:
  * cf_free. CF_BAD_FILE. */
