@@ -2,7 +2,8 @@
  *
  * Units by udunits2; see units.h. What the library gets wrong and is put right here: it takes reciprocals for
  * convertible (so dimensions are compared by dividing), it reads "" as 1, it reads m^0.5 as something else
- * (so powers with a point are refused), and its error output goes to the terminal (so it is switched off).
+ * (so powers with a point are refused), its error output goes to the terminal (so it is switched off), and so does a
+ * line break in a unit, on the standard output (so there may be none).
  */
 #include "base/units.h"
 
@@ -43,7 +44,7 @@ static bool is_blank(const char *text) { return text[strspn(text, " \t")] == '\0
 
 static ut_unit *parse(const char *text) {
   char trimmed[UNIT_MAX];
-  if (strlen(text) >= UNIT_MAX || has_broken_power(text)) return NULL;
+  if (strlen(text) >= UNIT_MAX || strchr(text, '\n') != NULL || has_broken_power(text)) return NULL;
   if (is_blank(text)) return ut_get_dimensionless_unit_one(database);
   const char *start = text + strspn(text, " \t");
   size_t count = strlen(start);

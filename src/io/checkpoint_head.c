@@ -149,8 +149,10 @@ static cf_status read_page(const source *s, char **page, size_t *size) {
   const int got = sscanf(first, "cattaneo checkpoint %6d %9zu\n", &format, size);
   if (got < 1) return cf_fail(CF_BAD_FILE, "%s: is not a checkpoint of this program", s->name);
   if (format != CF_CHECKPOINT_FORMAT)
-    return cf_fail(CF_BAD_FILE, "%s: has format %d, this program reads format %d", s->name, format,
-                   CF_CHECKPOINT_FORMAT);
+    return cf_fail(
+        CF_BAD_FILE,
+        "%s: has format %d, this program reads format %d: go on with the version of cattaneo that wrote it",
+        s->name, format, CF_CHECKPOINT_FORMAT);
   if (got < 2 || *size < HEAD_LEAST || *size > HEAD_MOST || (*size & (*size - 1)) != 0)
     return damaged(s, "its first line");
   if (s->size < *size)

@@ -119,8 +119,11 @@ static bool is_row(const char *line, const int columns, double *step) {
 static cf_status find_end(cf_table *t, char *text, const size_t size, const int64_t last, int64_t *found) {
   const size_t head = strlen(t->names);
   if (size < head || memcmp(text, t->names, head) != 0)
-    return cf_fail(CF_BAD_FILE, "%s: has other columns than this run: expected %.200s found %.*s",
-                   t->path.text, t->names, (int)CF_MIN(strcspn(text, "\n"), 200), text);
+    return cf_fail(
+        CF_BAD_FILE,
+        "%s: has other columns than this run: move it away, and resume begins a new one (expected %.*s, "
+        "found %.*s)",
+        t->path.text, (int)CF_MIN(head - 1, 200), t->names, (int)CF_MIN(strcspn(text, "\n"), 200), text);
   t->end = (off_t)head;
   for (char *line = text + head; line < text + size;) {
     char *newline = memchr(line, '\n', (size_t)(text + size - line));

@@ -5,7 +5,9 @@
 #include "base/units.h"
 
 #include <pthread.h>
+#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "testing.h"
 
@@ -91,6 +93,28 @@ static void *change_often(void *failures) {
   return NULL;
 }
 
+static void units_never_reach_the_terminal(void **state) {
+  (void)state;
+  static const char *const broken[] = {"m\n", "\n", "m\ns", "m $ s", "\"", "kg@", "m\\s"};
+  cf_unit_change change;
+  fflush(stdout);
+  FILE *file = tmpfile();
+  const int terminal[2] = {dup(1), dup(2)};
+  assert_true(file != NULL && terminal[0] >= 0 && terminal[1] >= 0);
+  for (int i = 0; i < 2; ++i) assert_true(dup2(fileno(file), 1 + i) >= 0);
+  int refused = 0;
+  for (size_t i = 0; i < sizeof broken / sizeof *broken; ++i)
+    refused += cf_units_change(broken[i], "m", &change) != CF_OK;
+  fflush(stdout);
+  for (int i = 0; i < 2; ++i) {
+    dup2(terminal[i], 1 + i);
+    close(terminal[i]);
+  }
+  assert_int_equal(refused, sizeof broken / sizeof *broken);
+  assert_int_equal(lseek(fileno(file), 0, SEEK_END), 0);
+  fclose(file);
+}
+
 static void units_may_be_asked_from_several_threads(void **state) {
   (void)state;
   pthread_t thread[4];
@@ -111,6 +135,7 @@ int main(void) {
       cmocka_unit_test(units_that_are_reciprocals_are_refused),
       cmocka_unit_test(units_that_do_not_exist_are_refused),
       cmocka_unit_test(units_of_any_length_do_no_harm),
+      cmocka_unit_test(units_never_reach_the_terminal),
       cmocka_unit_test(units_may_be_asked_from_several_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -188,6 +188,20 @@ static void a_stalled_solve_is_a_warning_of_its_step(void **state) {
   close_one(&calm);
 }
 
+static void a_flow_through_a_wall_is_a_warning_and_round_off_is_not(void **state) {
+  (void)state;
+  static const char *const closed[] = {"velocity=['sin(pi*x)', 0]", "fields.phi.walls=insulated"};
+  static const char *const passes[] = {"velocity=['cos(pi*x)', 0]"};
+  const one o = open_with(2, closed);
+  OK(cf_sim_step(o.sim, NULL));
+  assert_string_equal(cf_sim_warning(o.sim), "");
+  close_one(&o);
+  const one wind = open_with(1, passes);
+  OK(cf_sim_step(wind.sim, NULL));
+  assert_non_null(strstr(cf_sim_warning(wind.sim), "up to 1 m/s"));
+  close_one(&wind);
+}
+
 static void no_threads_is_refused(void **state) {
   (void)state;
   cf_scene *scene;
@@ -208,6 +222,7 @@ int main(void) {
       cmocka_unit_test(a_flux_is_seen_on_the_faces_of_its_axis),
       cmocka_unit_test(a_field_that_is_not_there_is_answered_with_those_that_are),
       cmocka_unit_test(a_stalled_solve_is_a_warning_of_its_step),
+      cmocka_unit_test(a_flow_through_a_wall_is_a_warning_and_round_off_is_not),
       cmocka_unit_test(no_threads_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
