@@ -112,7 +112,9 @@ static cf_status settle(cf_snowfall *s, const int64_t i) {
   for (int a = 0; a < 3; ++a) x[a] = (double)f->attribute[CF_PARTICLE_POSITION].at[a][i];
   cf_snowfall_flake(s, f->id[i], kind, radius, &flake);
   rest(s, f->id[i], radius, x, turn);
-  cf_snowpack_land(&s->pack, x[0], x[1], flake.mass * s->keys->stands_for / s->keys->snow_density);
+  /* Those that it stands for lie around it, side by side. */
+  cf_snowpack_land(&s->pack, x[0], x[1], radius * sqrt(s->keys->stands_for),
+                   flake.mass * s->keys->stands_for / s->keys->snow_density);
   s->landed += 1;
   CF_TRY(cf_particles_append(s->settled, 1, &j));
   for (int a = 0; a < 3; ++a) s->settled->attribute[CF_PARTICLE_POSITION].at[a][j] = (cf_real)x[a];

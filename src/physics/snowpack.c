@@ -29,8 +29,27 @@ static cf_corners corners_at(const cf_snowpack *s, const double x, const double 
   return c;
 }
 
-void cf_snowpack_land(const cf_snowpack *s, const double x, const double y, const double volume) {
+/* Adds `depth` times the weight of each column on the disc, and returns the sum of the weights. */
+static double strew(const cf_snowpack *s, const double x, const double y, const double wide,
+                    const double depth) {
+  const double at[2] = {(x - s->place[0]) / s->h, (y - s->place[1]) / s->h}, r = wide / s->h;
+  double sum = 0;
+  for (int j = (int)ceil(at[1] - r); j <= (int)floor(at[1] + r); ++j)
+    for (int i = (int)ceil(at[0] - r); i <= (int)floor(at[0] + r); ++i) {
+      const double u = (i - at[0]) / r, v = (j - at[1]) / r, left = CF_MAX(1 - u * u - v * v, 0);
+      s->depth[wrap(i, s->n[0]) + (ptrdiff_t)wrap(j, s->n[1]) * s->n[0]] += (cf_real)(depth * left * left);
+      sum += left * left;
+    }
+  return sum;
+}
+
+void cf_snowpack_land(const cf_snowpack *s, const double x, const double y, const double wide,
+                      const double volume) {
   const cf_corners c = corners_at(s, x, y);
+  if (wide > s->h) {
+    strew(s, x, y, wide, volume / (s->h * s->h) / strew(s, x, y, wide, 0));
+    return;
+  }
   for (int q = 0; q < 4; ++q) s->depth[c.column[q]] += (cf_real)(c.weight[q] * volume / (s->h * s->h));
 }
 

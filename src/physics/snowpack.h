@@ -3,7 +3,8 @@
  * Lying snow as a layer on columns: depth d(i, j) >= 0 on a base b(i, j) (the ground and the tops of what stands on
  * it), both in m, columns h wide, periodic sideways like the wind that brings it. Its top is b + d.
  *
- *     landing    volume is shared by the four columns around the place with linear weights: the sum is exact
+ *     landing    volume is shared by the four columns around the place with linear weights, or by all within a radius a
+ *                with weights (1 - (d/a)^2)^2 over their sum: the sum is exact
  *     slumping   where the top is steeper than the angle of repose, snow slides to the lower neighbour:
  *                    flux = min(SHARE max(|top_i - top_j| - h tan(repose), 0), d_i/4)       out of the higher one
  *                from old values, so a sweep keeps the sum to round-off and no column gives more than it has, and
@@ -25,8 +26,8 @@ typedef struct cf_snowpack {
   cf_real *change; /* scratch of the same size */
 } cf_snowpack;
 
-/* Adds a volume, m^3, at (x, y). */
-void cf_snowpack_land(const cf_snowpack *s, double x, double y, double volume);
+/* Adds a volume, m^3, at (x, y), over a disc of radius `wide` where that is more than a column. */
+void cf_snowpack_land(const cf_snowpack *s, double x, double y, double wide, double volume);
 
 /* The top at (x, y), interpolated; m. */
 double cf_snowpack_top(const cf_snowpack *s, double x, double y);

@@ -34,7 +34,7 @@ static void snow_that_lands_is_all_there(void **state) {
   make(&s);
   double all = 0;
   for (int i = 0; i < 1000; ++i) {
-    cf_snowpack_land(&s, 0.0377 * i, -0.0713 * i, 1e-4);
+    cf_snowpack_land(&s, 0.0377 * i, -0.0713 * i, 0.002 * (i % 200), 1e-4);
     all += 1e-4;
   }
   assert_true(fabs(cf_snowpack_volume(&s) - all) <
@@ -47,10 +47,23 @@ static void snow_lies_where_it_landed(void **state) {
   (void)state;
   cf_snowpack s;
   make(&s);
-  cf_snowpack_land(&s, 0.35, 0.55, 0.01);
+  cf_snowpack_land(&s, 0.35, 0.55, 0, 0.01);
   assert_true(fabs((double)s.depth[3 + 5 * N] - 1) < 1e-6);
   assert_true(fabs(cf_snowpack_top(&s, 0.35, 0.55) - 1) < 1e-6);
   assert_true(fabs(cf_snowpack_top(&s, 0.40, 0.55) - 0.5) < 1e-6);
+  clear(&s);
+}
+
+/* As much to the left as to the right, nothing outside, and all the lower. */
+static void many_lie_around_one(void **state) {
+  (void)state;
+  cf_snowpack s;
+  make(&s);
+  cf_snowpack_land(&s, 0.35, 0.05, 0.35, 0.01);
+  const cf_real *d = s.depth + 3;
+  assert_true(d[0] > d[1] && d[1] > d[2] && d[2] > d[3] && d[3] > 0 && d[4] == 0 && d[0] < 0.3);
+  const double other[3] = {(double)d[-2], (double)d[2 * N], (double)d[(N - 2) * N]};
+  for (int i = 0; i < 3; ++i) assert_true(fabs(other[i] - (double)d[2]) < 1e-6);
   clear(&s);
 }
 
@@ -104,6 +117,7 @@ static void snow_slides_alike_with_any_number_of_threads_and_mirrored(void **sta
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(snow_that_lands_is_all_there), cmocka_unit_test(snow_lies_where_it_landed),
+      cmocka_unit_test(many_lie_around_one),
       cmocka_unit_test(snow_slides_until_no_slope_is_steeper_than_repose),
       cmocka_unit_test(snow_slides_alike_with_any_number_of_threads_and_mirrored)};
   return cmocka_run_group_tests(tests, NULL, NULL);
