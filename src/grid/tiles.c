@@ -328,3 +328,63 @@ void cf_tiles_retire_cell(const cf_tiles *t, const cf_cell f) {
 void cf_tiles_retire_face(const cf_tiles *t, const cf_face f) {
   for (int a = 0; a < t->box.dim; ++a) cf_tiles_retire_bytes(t, f.at[a], sizeof(cf_real));
 }
+
+/* --- sums --------------------------------------------------------------------------------------------- */
+
+/* Goes through the rows of cells that active tiles have, in the order of their places: [at, end) is the next piece. Rows
+ * of tiles first ... last - 1 lie beside each other and share their layers, of which k is one. */
+typedef struct walk {
+  const cf_tiles *t;
+  ptrdiff_t first, last, row;
+  int k;
+  ptrdiff_t at, end;
+} walk;
+
+static void find_piece(walk *w) {
+  const cf_tile_row *row = &w->t->row[w->row];
+  w->at = row->j + (ptrdiff_t)w->k * w->t->box.n[1];
+  w->end = w->at + row->j_end - row->j;
+}
+
+/* Begins with the rows of tiles from `first` on. */
+static void enter_layers(walk *w) {
+  const cf_tiles *t = w->t;
+  w->row = w->last = w->first;
+  w->at = w->end = PTRDIFF_MAX;
+  if (w->first == t->rows) return;
+  w->k = t->row[w->first].k;
+  while (w->last < t->rows && t->row[w->last].k == w->k) ++w->last;
+  find_piece(w);
+}
+
+static void next_piece(walk *w) {
+  if (++w->row == w->last) {
+    if (++w->k == w->t->row[w->first].k_end) {
+      w->first = w->last;
+      enter_layers(w);
+      return;
+    }
+    w->row = w->first;
+  }
+  find_piece(w);
+}
+
+static double sum_of(walk *w, const double *v, const ptrdiff_t from, const ptrdiff_t n) {
+  if (w->at >= from + n) return 0;
+  if (n > 8) {
+    const double low = sum_of(w, v, from, n / 2);
+    return low + sum_of(w, v, from + n / 2, n - n / 2);
+  }
+  double sum = 0;
+  while (w->at < from + n) {
+    for (; w->at < CF_MIN(w->end, from + n); ++w->at) sum += v[w->at];
+    if (w->at == w->end) next_piece(w);
+  }
+  return sum;
+}
+
+double cf_tiles_sum_rows(const cf_tiles *t, const double *v) {
+  walk w = {.t = t};
+  enter_layers(&w);
+  return sum_of(&w, v, 0, cf_box_rows(&t->box));
+}

@@ -114,6 +114,10 @@ cf_status cf_tiles_face_create(const cf_tiles *t, cf_face *f);
 /* Cells in active tiles. */
 ptrdiff_t cf_tiles_cells(const cf_tiles *t);
 
+/* The sum of one number for every row of cells of the box, v[j + n[1] k], with the bits of cf_sum_ordered: rows without
+ * active tiles count as 0 and are not read, so it costs what the tiles do. */
+double cf_tiles_sum_rows(const cf_tiles *t, const double *v);
+
 /* --- sweeps --------------------------------------------------------------------------------------------- */
 
 static inline int cf_tiles_threads(const cf_tiles *t, const int threads) {

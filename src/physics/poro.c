@@ -5,6 +5,7 @@
  */
 #include "physics/poro.h"
 
+#include <limits.h>
 #include <math.h>
 
 #include "base/mem.h"
@@ -29,7 +30,7 @@ static cf_status fill_in(cf_poro *w) {
   CF_TRY(cf_tiles_face_create(w->tiles, &w->beta));
   CF_TRY(cf_pages_reserve((void **)&w->kind, (size_t)w->grid->box.size, false));
   CF_TRY(cf_pages_reserve((void **)&w->wet, (size_t)w->grid->box.size, false));
-  CF_TRY(CF_NEW(&w->rows, (ptrdiff_t)w->tiles->n[1] * w->tiles->n[2]));
+  CF_TRY(CF_NEW(&w->rows, cf_box_rows(&w->grid->box)));
   CF_TRY(cf_region_create_on(&w->region, w->grid, w->tiles));
   return cf_helmholtz_create(&w->solver, w->grid, &walls, 0);
 }
@@ -76,16 +77,28 @@ double cf_poro_filter_rate(const cf_poro_params *p, const double h) {
 
 /* --- between nodes and fields ------------------------------------------------------------------------------ */
 
+/* The tiles with nodes of block b that are part of a body: blocks have one more layer around the particles than these
+ * reach. */
+static void add_tiles(cf_poro *w, const cf_nodes *nodes, const int32_t b) {
+  int low[3] = {INT_MAX, INT_MAX, INT_MAX}, high[3] = {0, 0, 0};
+  for (int n = 0; n < CF_BLOCK_NODES; ++n) {
+    int cell[3];
+    if (!((double)nodes->at[(ptrdiff_t)b * CF_BLOCK_NODES + n][CF_NODE_FILL] > CF_PORO_LEAST_FILL)) continue;
+    cf_nodes_cell(nodes, &nodes->block[b], n, cell);
+    for (int a = 0; a < 3; ++a) {
+      low[a] = CF_MIN(low[a], cell[a]);
+      high[a] = CF_MAX(high[a], cell[a] + 1);
+    }
+  }
+  if (low[0] < high[0]) cf_tiles_add_box(w->tiles, low, high);
+}
+
 /* The tiles of this step; fields become 0 where tiles are new or cells may have been left. */
 static cf_status follow(cf_poro *w, const cf_nodes *nodes) {
   cf_cell *list[FIELDS];
-  const int edge = CF_BLOCK_EDGE(w->grid->box.dim);
   cf_tiles_drop_all(w->tiles);
-  for (int32_t b = 0; b < nodes->count; ++b) {
-    const int *low = nodes->block[b].cell;
-    const int high[3] = {low[0] + edge, low[1] + edge, low[2] + (w->grid->box.dim == 3 ? edge : 1)};
-    cf_tiles_add_box(w->tiles, low, high);
-  }
+  if (w->p.dense) cf_tiles_add_box(w->tiles, (int[3]){0, 0, 0}, w->grid->box.n);
+  for (int32_t b = 0; b < nodes->count && !w->p.dense; ++b) add_tiles(w, nodes, b);
   CF_TRY(cf_tiles_update(w->tiles));
   list_fields(w, list);
   for (int i = 0; i < FIELDS; ++i) cf_tiles_retire_cell(w->tiles, *list[i]);
@@ -265,16 +278,16 @@ static void keep(const cf_poro *w) {
 }
 
 static double gained_by_nodes(const cf_poro *w) {
-  const cf_tiles *t = w->tiles;
-  for (ptrdiff_t r = 0; r < t->rows; ++r) w->rows[r] = 0;
-  CF_PARALLEL_TILES (t, w->grid->threads, r)
-    CF_TILE_ROWS (t, r, j, k)
-      CF_TILE_RUNS (t, r, run)
-        for (int i = run->low; i < run->high; ++i) {
-          const ptrdiff_t p = cf_box_at(&w->grid->box, i, j, k);
-          w->rows[r] += (double)w->m.at[p] - (double)w->m0.at[p];
-        }
-  return cf_sum_ordered(w->rows, t->rows);
+  const cf_box *box = &w->grid->box;
+  CF_PARALLEL_TILES (w->tiles, w->grid->threads, r)
+    CF_TILE_ROWS (w->tiles, r, j, k) {
+      double sum = 0;
+      CF_TILE_RUNS (w->tiles, r, run)
+        for (ptrdiff_t p = cf_box_at(box, run->low, j, k); p < cf_box_at(box, run->high, j, k); ++p)
+          sum += (double)w->m.at[p] - (double)w->m0.at[p];
+      w->rows[j + (ptrdiff_t)k * box->n[1]] = sum;
+    }
+  return cf_tiles_sum_rows(w->tiles, w->rows);
 }
 
 /* The length of the stages of a step, and what follows from it. */

@@ -47,6 +47,7 @@ typedef struct cf_poro_source {
 typedef struct cf_poro_params {
   double k, tau, f_t;
   bool two_stages; /* SDIRK2; one: backward Euler, as the paper */
+  bool dense;      /* visits every cell of the lattice: the same bits, to compare with */
   cf_solve_options solver;
   int sources;
   const cf_poro_source *source;
@@ -62,7 +63,7 @@ typedef struct cf_poro {
   cf_face beta;                                      /* kappa times `scale`; 0 to held cells */
   double stage_beta, scale;                          /* scale: stage_beta h^2 */
   unsigned char *kind, *wet;                         /* of a cell: see poro_part.h, poro_cells.c */
-  double *rows;                                      /* partial sums */
+  double *rows;                                      /* partial sums, one a row of cells */
 } cf_poro;
 
 /* `lattice` and the sources must outlive it. CF_BAD_ARGUMENT, CF_NO_MEMORY. */

@@ -134,7 +134,6 @@ static cf_status prepare(cf_varied *v, const cf_region *region) {
     if (v->own_beta.at[a] != NULL)
       cf_tiles_follow_bytes(tiles, v->level[0].followed, v->own_beta.at[a], sizeof(cf_real));
   cf_coupled_follow_tiles(&v->level[0]);
-  for (ptrdiff_t r = 0; r < 2 * cf_box_rows(&v->A->grid.box); ++r) v->sums[r] = 0;
   return CF_OK;
 }
 

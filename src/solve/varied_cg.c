@@ -125,6 +125,8 @@ typedef struct pair {
 
 static pair add_up(const cf_varied *v) {
   const ptrdiff_t rows = cf_box_rows(&v->A->grid.box);
+  if (v->tiles != NULL)
+    return (pair){cf_tiles_sum_rows(v->tiles, v->sums), cf_tiles_sum_rows(v->tiles, v->sums + rows)};
   return (pair){cf_sum_ordered(v->sums, rows), cf_sum_ordered(v->sums + rows, rows)};
 }
 

@@ -30,7 +30,7 @@ struct cf_varied {
   cf_real *lo[3], *hi[3]; /* 1/h^2 along each axis, with the walls of the box (level.h) */
 
   cf_cell r, p, Ap; /* of conjugate gradients */
-  double *sums;     /* two for every row of the box; rows without tiles are 0 */
+  double *sums;     /* two for every row of the box */
 };
 
 /* level[at].e = one V-cycle on level[at].r. */

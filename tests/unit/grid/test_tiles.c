@@ -199,6 +199,29 @@ static void bad_edges_are_refused(void **state) {
   assert_null(t);
 }
 
+/* One number a row: as if rows without tiles had 0, whatever stands there. */
+static void sums_over_rows_have_the_bits_of_dense_ones(void **state) {
+  (void)state;
+  const cf_box b = box_3d();
+  static double sparse[NY * NZ], dense[NY * NZ];
+  cf_tiles *t;
+  OK(cf_tiles_create(&t, &b, NULL));
+  for (int round = 0; round < 40; ++round) {
+    cf_tiles_drop_all(t);
+    for (int v = 0; v < round % 9; ++v) cf_tiles_add(t, pick(t->n[0]), pick(t->n[1]), pick(t->n[2]));
+    OK(cf_tiles_update(t));
+    visit(t);
+    for (int r = 0; r < NY * NZ; ++r) {
+      bool any = false;
+      for (int i = 0; i < NX; ++i) any = any || visited[r / NY][r % NY][i] > 0;
+      sparse[r] = any ? test_random(&seed) - 0.3 : 1e9;
+      dense[r] = any ? sparse[r] : 0;
+    }
+    assert_true(cf_tiles_sum_rows(t, sparse) == cf_sum_ordered(dense, NY * NZ));
+  }
+  cf_tiles_destroy(t);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_active_cell_is_visited_once),
@@ -206,6 +229,7 @@ int main(void) {
       cmocka_unit_test(what_leaves_is_zero_and_what_stays_is_kept),
       cmocka_unit_test(a_ball_that_moves_gives_its_pages_back),
       cmocka_unit_test(an_update_without_changes_is_none),
+      cmocka_unit_test(sums_over_rows_have_the_bits_of_dense_ones),
       cmocka_unit_test(bad_edges_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
