@@ -20,15 +20,24 @@ static inline uint64_t cf_random_mix(uint64_t v) {
   return v ^ (v >> 31);
 }
 
-static inline uint64_t cf_random_bits(const uint64_t seed, const uint64_t stream, const uint64_t step,
-                                      const uint64_t cell) {
-  return cf_random_mix(cf_random_mix(cf_random_mix(cf_random_mix(seed) ^ stream) ^ step) ^ cell);
+/* The part of a number that cells have in common. */
+static inline uint64_t cf_random_key(const uint64_t seed, const uint64_t stream, const uint64_t step) {
+  return cf_random_mix(cf_random_mix(cf_random_mix(seed) ^ stream) ^ step);
 }
 
 /* In [0, 1), a multiple of 2^-53. */
+static inline double cf_random_at(const uint64_t key, const uint64_t cell) {
+  return (double)(cf_random_mix(key ^ cell) >> 11) * 0x1p-53;
+}
+
+static inline uint64_t cf_random_bits(const uint64_t seed, const uint64_t stream, const uint64_t step,
+                                      const uint64_t cell) {
+  return cf_random_mix(cf_random_key(seed, stream, step) ^ cell);
+}
+
 static inline double cf_random(const uint64_t seed, const uint64_t stream, const uint64_t step,
                                const uint64_t cell) {
-  return (double)(cf_random_bits(seed, stream, step, cell) >> 11) * 0x1p-53;
+  return cf_random_at(cf_random_key(seed, stream, step), cell);
 }
 
 #endif

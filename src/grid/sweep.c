@@ -2,6 +2,7 @@
 #include "grid/sweep.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 double cf_sum_ordered(const double *v, const ptrdiff_t n) {
@@ -22,15 +23,23 @@ CF_CLONES double cf_sweep_row_sum(const int n, const cf_real *f) {
   return cf_sum_lanes(lane);
 }
 
+CF_CLONES static void row_ends(const int n, const cf_real *row, cf_real *min, cf_real *max) {
+  cf_real least = row[0], largest = row[0];
+#pragma omp simd reduction(min : least) reduction(max : largest)
+  for (int i = 0; i < n; ++i) {
+    least = row[i] < least ? row[i] : least;
+    largest = row[i] > largest ? row[i] : largest;
+  }
+  *min = least;
+  *max = largest;
+}
+
 cf_range cf_sweep_range(const cf_box *b, const int threads, const cf_real *f, double *rows) {
   const ptrdiff_t count = cf_box_rows(b);
   CF_PARALLEL_ROWS (b, threads, r) {
     const cf_real *row = f + cf_box_row(b, r);
-    cf_real least = row[0], largest = row[0];
-    for (int i = 0; i < b->n[0]; ++i) {
-      least = row[i] < least ? row[i] : least;
-      largest = row[i] > largest ? row[i] : largest;
-    }
+    cf_real least, largest;
+    row_ends(b->n[0], row, &least, &largest);
     rows[r] = cf_sweep_row_sum(b->n[0], row);
     rows[count + r] = (double)least;
     rows[2 * count + r] = (double)largest;
@@ -43,14 +52,19 @@ cf_range cf_sweep_range(const cf_box *b, const int threads, const cf_real *f, do
   return range;
 }
 
+/* 0 * x is not 0 only where x is not finite. */
+CF_CLONES static bool row_is_finite(const int n, const cf_real *row) {
+  cf_real zero = 0;
+#pragma omp simd reduction(+ : zero)
+  for (int i = 0; i < n; ++i) zero += row[i] * 0;
+  return zero == 0;
+}
+
 int cf_sweep_finite(const cf_box *b, const int threads, const cf_real *f, int where[3]) {
   ptrdiff_t bad = PTRDIFF_MAX;
 #pragma omp parallel for schedule(static) num_threads(cf_sweep_threads(b, threads)) reduction(min : bad)
   for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r) {
-    const cf_real *row = f + cf_box_row(b, r);
-    cf_real zero = 0; /* 0 * x is not 0 only where x is not finite */
-    for (int i = 0; i < b->n[0]; ++i) zero += row[i] * 0;
-    if (!(zero == 0) && r < bad) bad = r;
+    if (r < bad && !row_is_finite(b->n[0], f + cf_box_row(b, r))) bad = r;
   }
   if (bad == PTRDIFF_MAX) return 1;
   const cf_real *row = f + cf_box_row(b, bad);

@@ -142,8 +142,7 @@ CF_CLONES static cf_real largest_in_row(const int n, const cf_real *row) {
   return most;
 }
 
-/* sums[r] = 0 where row r of eta has nothing but 0. */
-static void find_rows(const cf_phase *p, const cf_cell eta) {
+void cf_phase_find_rows(const cf_phase *p, const cf_cell eta) {
   const cf_box *box = &p->grid->box;
   CF_PARALLEL_ROWS (box, p->grid->threads, r)
     p->sums[r] = (double)largest_in_row(box->n[0], eta.at + cf_box_row(box, r));
@@ -156,17 +155,16 @@ static int inside(const cf_phase *p, const int a, const int i) {
   return i < 0 ? 0 : n - 1;
 }
 
-static bool is_quiet(const cf_phase *p, const bool held, const int j, const int k) {
+bool cf_phase_is_quiet(const cf_phase *p, const int j, const int k) {
   const cf_box *box = &p->grid->box;
   const int reach = box->dim == 3 ? 1 : 0;
-  if (held) return false;
   for (int c = -reach; c <= reach; ++c)
     for (int b = -1; b <= 1; ++b)
       if (p->sums[inside(p, 1, j + b) + (ptrdiff_t)box->n[1] * inside(p, 2, k + c)] != 0) return false;
   return true;
 }
 
-static bool has_held_wall(const cf_phase *p) {
+bool cf_phase_has_held_wall(const cf_phase *p) {
   for (int a = 0; a < p->grid->box.dim; ++a)
     for (int side = 0; side < 2; ++side)
       if (p->eta_walls.at[a][side] != NULL) return true;
@@ -218,7 +216,7 @@ static void row_of_slab(slab *s, const int j, const int k) {
   const size_t bytes = (size_t)n * sizeof *w->y;
   const ptrdiff_t start = cf_box_at(box, 0, j, k);
   cf_real *z_low = box->dim == 3 ? w->plane + (ptrdiff_t)n * j : NULL;
-  w->quiet = is_quiet(s->p, s->held, j, k);
+  w->quiet = !s->held && cf_phase_is_quiet(s->p, j, k);
   if (w->quiet) {
     memset(w->div, 0, bytes);
     memset(w->low, 0, bytes);
@@ -260,8 +258,8 @@ void cf_phase_each_row(const cf_phase *p, const cf_phase_part part, const cf_cel
   const int threads = CF_MIN(CF_MIN(p->threads, cf_sweep_threads(box, p->grid->threads)), outer);
   const faces f = faces_of(p, part, eta);
   faces_row *const row = faces_row_of(box->dim, p->law.facets, p->places.strength.at != NULL);
-  const bool held = has_held_wall(p);
-  find_rows(p, eta);
+  const bool held = cf_phase_has_held_wall(p);
+  cf_phase_find_rows(p, eta);
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (int t = 0; t < threads; ++t) {
     slab s = {p, &p->rows[t], f, row, held, visit, context};

@@ -3,6 +3,8 @@
  * What one wants to know of a crystal: how much there is, how far it reaches, and its energy.
  */
 #include <math.h>
+#include <omp.h>
+#include <string.h>
 
 #include "physics/phase_part.h"
 #include "stencil/arctan.h"
@@ -30,85 +32,170 @@ double cf_phase_heat_content(const cf_phase *p, const cf_phase_state *y) {
 
 /* --- energy ----------------------------------------------------------------------------------------------- */
 
+/* What the density of a row reads; everything but the rows A2 and beta are fields. */
+typedef struct density {
+  ptrdiff_t stride[3];
+  const cf_real *eta, *T, *r;
+  const cf_real *A2, *beta;
+  cf_real half_star2[3]; /* Gamma^2/(2 h^2) */
+  bool held;             /* there is a wall with a value */
+  cf_real half_eps2, alpha_pi, gamma, coupling, inertia;
+  cf_real *out;
+} density;
+
 /* g(eta) with psi frozen, eta^2 (1 - eta)^2/4 - psi (eta^2/2 - eta^3/3); for Karma and Rappel's psi four times
  * eta^2 (1 - eta)^2/4 + 2 lambda T (eta^3/3 - eta^4/2 + eta^5/5). */
-static double well(const cf_phase *p, const double e, const double T, const double beta) {
-  const double bump = e * (1 - e);
-  if (p->p.karma_rappel)
-    return bump * bump + 8 * p->p.coupling * T * e * e * e * (1.0 / 3 + e * (-1.0 / 2 + e / 5));
-  const double psi = -p->p.alpha / PI * (double)cf_arctan((cf_real)(p->p.gamma * beta * T));
-  return bump * bump / 4 - psi * e * e * (0.5 - e / 3);
+CF_KERNEL cf_real well(const int karma, const density *d, const cf_real e, const cf_real T,
+                       const cf_real beta) {
+  const cf_real bump = e * (1 - e), half = (cf_real)0.5, third = (cf_real)(1.0 / 3), fifth = (cf_real)0.2;
+  if (karma) return bump * bump + 8 * d->coupling * T * (e * e * e) * (third + e * (fifth * e - half));
+  const cf_real psi = -(d->alpha_pi * cf_arctan(d->gamma * beta * T));
+  return bump * bump / 4 - psi * (e * e) * (half - third * e);
+}
+
+/* Half the squares of the differences on either side: the energy whose gradient the five-point Laplacian is. */
+CF_KERNEL void density_row(const int dim, const int karma, const int n, const density *d,
+                           const ptrdiff_t start) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    const ptrdiff_t q = start + i;
+    const cf_real here = d->eta[q];
+    cf_real slope2 = 0;
+    CF_AXIS_LOOP
+    for (int a = 0; a < dim; ++a) {
+      const cf_real low = here - d->eta[q - d->stride[a]], high = d->eta[q + d->stride[a]] - here;
+      slope2 += d->half_star2[a] * (low * low + high * high);
+    }
+    d->out[i] = d->half_eps2 * d->A2[i] * slope2 + well(karma, d, here, d->T[q], d->beta[i]);
+  }
+}
+CF_CLONED_FORMS(density_row, const density *, const ptrdiff_t)
+
+CF_CLONES static void inertia_row(const int n, const density *d, const ptrdiff_t start) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) d->out[i] += d->inertia * (d->r[start + i] * d->r[start + i]);
+}
+
+static density density_of(const cf_phase *p, const cf_phase_state *y) {
+  const cf_phase_params *q = &p->p;
+  density d = {.eta = y->eta.at, .T = y->T.at, .r = y->r.at, .held = cf_phase_has_held_wall(p)};
+  d.half_eps2 = (cf_real)(q->width * q->width / 2);
+  d.alpha_pi = (cf_real)(q->alpha / PI), d.gamma = (cf_real)q->gamma, d.coupling = (cf_real)q->coupling;
+  if (p->has_r && q->form == CF_PHASE_STABLE && q->tau_eta > 0)
+    d.inertia = (cf_real)(q->tau_1 / (2 * (1 - q->f_eta) * q->tau_eta));
+  for (int a = 0; a < p->grid->box.dim; ++a) {
+    const double star = (a == 2 ? q->star : 1) / p->grid->h;
+    d.stride[a] = p->grid->box.stride[a];
+    d.half_star2[a] = (cf_real)(star * star / 2);
+  }
+  return d;
+}
+
+/* The density of row r into w->react. */
+static void density_of_row(const cf_phase *p, const density *all, const cf_phase_rows *w, const ptrdiff_t r) {
+  const cf_box *box = &p->grid->box;
+  const int n = box->n[0];
+  const ptrdiff_t start = cf_box_row(box, r);
+  density d = *all;
+  d.A2 = w->A2, d.beta = w->beta, d.out = w->react;
+  if (!d.held && cf_phase_is_quiet(p, (int)(r % box->n[1]), (int)(r / box->n[1]))) {
+    memset(d.out, 0, (size_t)n * sizeof *d.out);
+  } else {
+    cf_phase_A2_row(p, d.eta, start, w->A2);
+    if (p->p.drive_strength != 0)
+      cf_phase_beta_row(p, d.eta, start, w->beta);
+    else
+      for (int i = 0; i < n; ++i) w->beta[i] = 1;
+    density_row_by_form(box->dim, p->p.karma_rappel, n, &d, start);
+  }
+  if (d.inertia > 0) inertia_row(n, &d, start);
 }
 
 double cf_phase_energy(cf_phase *p, const cf_phase_state *y) {
   const cf_box *box = &p->grid->box;
-  const double eps2 = p->p.width * p->p.width, h = p->grid->h;
-  const double inertia = p->has_r && p->p.form == CF_PHASE_STABLE && p->p.tau_eta > 0
-                             ? p->p.tau_1 / (2 * (1 - p->p.f_eta) * p->p.tau_eta)
-                             : 0;
+  const density d = density_of(p, y);
+  const ptrdiff_t rows = cf_box_rows(box);
   cf_phase_ghosts(p, y->eta);
-  for (ptrdiff_t r = 0; r < cf_box_rows(box); ++r) {
-    cf_phase_rows *w = &p->rows[0];
-    const ptrdiff_t start = cf_box_row(box, r);
-    cf_phase_A2_row(p, y->eta.at, start, w->A2);
-    if (p->p.drive_strength != 0) cf_phase_beta_row(p, y->eta.at, start, w->beta);
-    double sum = 0;
-    for (int i = 0; i < box->n[0]; ++i) {
-      const ptrdiff_t q = start + i;
-      double slope2 = 0;
-      for (int a = 0; a < box->dim; ++a) {
-        const ptrdiff_t s = box->stride[a];
-        const double star = (a == 2 ? p->p.star : 1) / h, here = (double)y->eta.at[q];
-        const double low = star * (here - (double)y->eta.at[q - s]),
-                     high = star * ((double)y->eta.at[q + s] - here);
-        slope2 += (low * low + high * high) / 2;
-      }
-      const double beta = p->p.drive_strength != 0 ? (double)w->beta[i] : 1;
-      sum += eps2 / 2 * (double)w->A2[i] * slope2 + well(p, (double)y->eta.at[q], (double)y->T.at[q], beta);
-      if (inertia > 0) sum += inertia * (double)y->r.at[q] * (double)y->r.at[q];
-    }
-    p->sums[r] = sum;
+  cf_phase_find_rows(p, y->eta);
+  CF_PARALLEL_ROWS (box, p->threads, r) {
+    const cf_phase_rows *w = &p->rows[omp_get_thread_num()];
+    density_of_row(p, &d, w, r);
+    p->sums[rows + r] = cf_sweep_row_sum(box->n[0], w->react);
   }
-  return sum_rows(p);
+  return cf_sum_ordered(p->sums + rows, rows) * cf_grid_volume(p->grid);
 }
 
 /* --- the tip ---------------------------------------------------------------------------------------------- */
 
-typedef struct crossing {
-  double reach, place[3];
-} crossing;
+/* Crossings of eta = 1/2 between cells and their neighbours in +a of one row. */
+typedef struct crossings {
+  const cf_real *eta, *next;
+  double first[3]; /* of the row's first cell, from where the reach is counted */
+  double h;
+  int along, axis; /* a; the axis to reach along, or -1 */
+} crossings;
 
-/* The crossing between cell q and its neighbour in +a, if it reaches farther. */
-static void look(const cf_phase *p, const cf_real *eta, const int at[3], const int a, const double from[3],
-                 const int axis, crossing *best) {
-  const cf_box *box = &p->grid->box;
-  const ptrdiff_t q = cf_box_at(box, at[0], at[1], at[2]);
-  const double low = (double)eta[q] - 0.5, high = (double)eta[q + box->stride[a]] - 0.5;
-  if ((low < 0) == (high < 0)) return;
-  double place[3] = {0, 0, 0}, reach = 0;
-  for (int b = 0; b < box->dim; ++b) {
-    place[b] = cf_grid_place(p->grid, b, at[b], 0) + (b == a ? low / (low - high) * p->grid->h : 0);
-    reach += (place[b] - from[b]) * (place[b] - from[b]);
+CF_KERNEL double reach_at(const crossings *c, const int i) {
+  const double low = (double)c->eta[i] - 0.5, high = (double)c->next[i] - 0.5;
+  const bool crosses = (low < 0) != (high < 0);
+  const double part = c->h * (low / (crosses ? low - high : 1));
+  const double x = c->first[0] + i * c->h + (c->along == 0 ? part : 0);
+  const double y = c->first[1] + (c->along == 1 ? part : 0), z = c->first[2] + (c->along == 2 ? part : 0);
+  const double reach = c->axis < 0 ? x * x + (y * y + z * z) : c->axis == 0 ? x : c->axis == 1 ? y : z;
+  return crosses ? reach : -INFINITY;
+}
+
+CF_CLONES static double reach_in_row(const int n, const crossings *c) {
+  double most = -INFINITY;
+#pragma omp simd reduction(max : most)
+  for (int i = 0; i < n; ++i) {
+    const double reach = reach_at(c, i);
+    most = reach > most ? reach : most;
   }
-  reach = axis < 0 ? sqrt(reach) : place[axis] - from[axis];
-  if (reach <= best->reach) return;
-  *best = (crossing){reach, {place[0], place[1], place[2]}};
+  return most;
+}
+
+/* Of row r towards +a; there are *n of them. */
+static crossings crossings_of(const cf_phase *p, const cf_real *eta, const double from[3], const ptrdiff_t r,
+                              const int a, int *n) {
+  const cf_box *box = &p->grid->box;
+  const int at[3] = {0, (int)(r % box->n[1]), (int)(r / box->n[1])};
+  crossings c = {.eta = eta + cf_box_row(box, r), .h = p->grid->h, .along = a, .axis = -1};
+  c.next = c.eta + box->stride[a];
+  for (int b = 0; b < box->dim; ++b) c.first[b] = cf_grid_place(p->grid, b, at[b], 0) - from[b];
+  *n = a == 0 ? box->n[0] - 1 : at[a] + 1 < box->n[a] ? box->n[0] : 0;
+  return c;
 }
 
 double cf_phase_tip(const cf_phase *p, const cf_cell eta, const double from[3], const int axis,
                     double where[3]) {
   const cf_box *box = &p->grid->box;
-  crossing best = {0, {from[0], from[1], box->dim == 3 ? from[2] : 0}};
-  int at[3];
-  for (at[2] = 0; at[2] < box->n[2]; ++at[2])
-    for (at[1] = 0; at[1] < box->n[1]; ++at[1]) {
-      const cf_real *row = eta.at + cf_box_at(box, 0, at[1], at[2]);
-      for (at[0] = 0; at[0] < box->n[0]; ++at[0])
-        for (int a = 0; a < box->dim; ++a) {
-          const cf_real next = at[a] + 1 < box->n[a] ? row[at[0] + box->stride[a]] : row[at[0]];
-          if ((row[at[0]] < (cf_real)0.5) != (next < (cf_real)0.5)) look(p, eta.at, at, a, from, axis, &best);
-        }
+  const ptrdiff_t rows = cf_box_rows(box);
+  double *reach = p->sums + rows, best = 0;
+  crossings far = {.first = {0}};
+  for (int b = 0; b < 3; ++b) where[b] = b < box->dim ? from[b] : 0;
+  cf_phase_find_rows(p, eta);
+  for (int a = 0; a < box->dim; ++a) {
+    const ptrdiff_t next = a == 1 ? 1 : a == 2 ? box->n[1] : 0;
+    CF_PARALLEL_ROWS (box, p->grid->threads, r) {
+      int n;
+      crossings c = crossings_of(p, eta.at, from, r, a, &n);
+      c.axis = axis;
+      reach[r] = -INFINITY;
+      if (n > 0 && (p->sums[r] >= 0.5 || p->sums[r + next] >= 0.5)) reach[r] = reach_in_row(n, &c);
     }
-  for (int b = 0; b < 3; ++b) where[b] = best.place[b];
-  return best.reach;
+    for (ptrdiff_t r = 0; r < rows; ++r) {
+      int n;
+      if (!(reach[r] > best)) continue;
+      best = reach[r];
+      far = crossings_of(p, eta.at, from, r, a, &n);
+      far.axis = axis;
+    }
+  }
+  if (!(best > 0)) return 0;
+  int i = 0;
+  while (reach_at(&far, i) != best) ++i;
+  for (int b = 0; b < box->dim; ++b) where[b] = from[b] + far.first[b] + (b == 0 ? i * far.h : 0);
+  where[far.along] += far.h * ((double)far.eta[i] - 0.5) / ((double)far.eta[i] - (double)far.next[i]);
+  return axis < 0 ? sqrt(best) : best;
 }

@@ -55,6 +55,12 @@ typedef enum cf_phase_part { CF_PHASE_X, CF_PHASE_X_1, CF_PHASE_X_2 } cf_phase_p
 void cf_phase_each_row(const cf_phase *p, cf_phase_part part, cf_cell eta, cf_phase_visit *visit,
                        void *context);
 
+/* sums[r] becomes the largest |eta| of row r; then, unless a wall is held at something, X is 0 in the quiet rows: those
+ * where it and its neighbours have 0. */
+void cf_phase_find_rows(const cf_phase *p, cf_cell eta);
+bool cf_phase_is_quiet(const cf_phase *p, int j, int k);
+bool cf_phase_has_held_wall(const cf_phase *p);
+
 /* --- rows ------------------------------------------------------------------------------------------------- */
 
 /* react[i] = f. With `lean` T is H, the temperature in psi H + K eta, and lean[i] the slope min(df/deta, 0) of f
