@@ -16,4 +16,9 @@
 /* Writes what is chosen (numbers and counters are passed over). CF_BAD_ARGUMENT: no such entry; CF_CANNOT_WRITE. */
 cf_status cf_npy_write(const char *folder, int64_t frame, const cf_registry *r, const cf_choice *choice);
 
+/* Reads an array of 2 or 3 axes of 32 or 64 bit floats, little endian, in C order: n[0] is the last axis, whose values
+ * lie next to each other; n[2] = 1 where there are two. *values is the caller's: cf_free. CF_BAD_FILE: no such file or
+ * array, or a value that is not finite; CF_NO_MEMORY. */
+cf_status cf_npy_read(const char *path, int *axes, int n[3], float **values);
+
 #endif

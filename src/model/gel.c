@@ -123,7 +123,7 @@ static double gel_natural_dt(const void *model, const double t) {
   return rate > 0 ? CF_MIN(g->scene->time.cfl / rate, longest) : longest;
 }
 
-static const char *const gel_keys[] = {"gel", "diffusion", NULL};
+static const char *const gel_keys[] = {"gel", "obstacles", "diffusion", NULL};
 static const char *const gel_fields[] = {NULL};
 static const char *const gel_outputs[] = {"saturation", "gel", NULL};
 

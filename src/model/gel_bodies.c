@@ -11,8 +11,8 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "io/image.h"
-#include "io/mesh.h"
 #include "model/gel_part.h"
+#include "model/surface.h"
 
 typedef struct body {
   const cf_scene_gel_body *keys;
@@ -36,39 +36,6 @@ static cf_status fail_at(const cf_gel *g, const int i, const char *key) {
   return cf_scene_fail_at(g->scene, path, "%s: %s", path, sentence);
 }
 
-static void path_of(const cf_scene *scene, const char *file, char *path, const size_t size) {
-  if (file[0] == '/')
-    snprintf(path, size, "%s", file);
-  else
-    snprintf(path, size, "%s/%s", cf_scene_folder(scene), file);
-}
-
-/* Reads the surface; moved to center and scaled to half where the scene says them. */
-static cf_status read_mesh(const cf_gel *g, body *b, double low[3], double high[3]) {
-  char path[1024];
-  cf_mesh *mesh;
-  cf_mesh_facts facts;
-  path_of(g->scene, b->keys->file, path, sizeof path);
-  CF_TRY(cf_mesh_create(&mesh));
-  cf_status s = cf_mesh_read(mesh, path);
-  if (s == CF_OK) s = cf_mesh_check_closed(mesh);
-  if (s == CF_OK) s = cf_mesh_look(mesh, &facts);
-  for (int64_t v = 0; s == CF_OK && v < mesh->vertices; ++v)
-    for (int a = 0; a < 3; ++a) {
-      const double middle = (facts.low[a] + facts.high[a]) / 2, half = (facts.high[a] - facts.low[a]) / 2;
-      const double scale = b->keys->given.half && half > 0 ? b->keys->half.value[a] / half : 1;
-      const double to = b->keys->given.center ? b->keys->center.value[a] : middle;
-      mesh->place[v][a] = (cf_real)(to + scale * ((double)mesh->place[v][a] - middle));
-      if (v == 0) low[a] = high[a] = (double)mesh->place[v][a];
-      low[a] = CF_MIN(low[a], (double)mesh->place[v][a]);
-      high[a] = CF_MAX(high[a], (double)mesh->place[v][a]);
-    }
-  if (s == CF_OK) s = cf_mesh_distance(mesh, g->grid->h / 2, 2, &b->samples);
-  b->shape = cf_shape_sampled(&b->samples);
-  cf_mesh_destroy(mesh);
-  return s;
-}
-
 /* Half sides of the box that encloses a body in its own frame; a mesh says itself. */
 static cf_status find_bounds(const cf_gel *g, body *b, double half[3]) {
   const cf_scene_gel_body *k = b->keys;
@@ -79,13 +46,13 @@ static cf_status find_bounds(const cf_gel *g, body *b, double half[3]) {
                                            : k->thickness / 2;
   }
   if (k->shape == CF_GEL_BODY_IMAGE) {
-    char path[1024];
-    path_of(g->scene, k->file, path, sizeof path);
-    return cf_image_read(path, &b->width, &b->height, &b->rgb);
+    return cf_image_read(k->file, &b->width, &b->height, &b->rgb);
   }
   if (k->shape != CF_GEL_BODY_MESH) return CF_OK;
   double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-  CF_TRY(read_mesh(g, b, low, high));
+  CF_TRY(cf_surface_read(k->file, &(cf_surface_place){&k->center, &k->half}, g->grid->h / 2, 2, &b->samples,
+                         low, high));
+  b->shape = cf_shape_sampled(&b->samples);
   for (int a = 0; a < 3; ++a) b->center[a] = (low[a] + high[a]) / 2, half[a] = (high[a] - low[a]) / 2;
   return CF_OK;
 }

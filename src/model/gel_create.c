@@ -3,10 +3,8 @@
  * Making a gel: lattice, materials, obstacles and water from their keys, then particles, then what steps them.
  */
 #include <math.h>
-#include <stdio.h>
 
 #include "base/mem.h"
-#include "io/mesh.h"
 #include "model/gel_part.h"
 
 /* --- obstacles --------------------------------------------------------------------------------------------- */
@@ -35,49 +33,14 @@ static void make_walls(cf_gel *g) {
     }
 }
 
-static cf_status read_shape(cf_gel *g, const char *file, cf_samples *samples) {
-  char path[1024];
-  cf_mesh *mesh;
-  if (file[0] == '/')
-    snprintf(path, sizeof path, "%s", file);
-  else
-    snprintf(path, sizeof path, "%s/%s", cf_scene_folder(g->scene), file);
-  CF_TRY(cf_mesh_create(&mesh));
-  cf_status s = cf_mesh_read(mesh, path);
-  if (s == CF_OK) s = cf_mesh_check_closed(mesh);
-  if (s == CF_OK) s = cf_mesh_distance(mesh, g->grid->h, 3, samples);
-  cf_mesh_destroy(mesh);
-  return s;
-}
-
-static cf_status make_obstacle(cf_gel *g, const int i) {
-  const cf_scene_gel_obstacle *k = &g->keys->obstacles.item[i];
-  const int dim = g->grid->box.dim, o = g->obstacles++;
-  double at[3], n[3], half[3];
-  middle_of(&k->center, at);
-  direction(&k->normal, dim, n);
-  for (int a = 0; a < 3; ++a) half[a] = a < k->half.count ? k->half.value[a] : (double)INFINITY;
-  if (k->shape == CF_GEL_OBSTACLE_PLANE) g->shape[o] = cf_shape_plane(at, n);
-  if (k->shape == CF_GEL_OBSTACLE_BOX) g->shape[o] = cf_shape_box(dim, at, half);
-  if (k->shape == CF_GEL_OBSTACLE_BALL) g->shape[o] = cf_shape_sphere(at, k->radius);
-  if (k->shape == CF_GEL_OBSTACLE_MESH) {
-    char key[64], sentence[CF_SENTENCE_MAX];
-    if (read_shape(g, k->file, &g->samples[o]) != CF_OK) {
-      snprintf(key, sizeof key, "gel.obstacles.%d.file", i);
-      snprintf(sentence, sizeof sentence, "%s", cf_status_sentence());
-      return cf_scene_fail_at(g->scene, key, "%s: %s", key, sentence);
-    }
-    g->shape[o] = cf_shape_sampled(&g->samples[o]);
+static void make_obstacles(cf_gel *g) {
+  for (int i = 0; i < g->solids.count; ++i) {
+    const cf_obstacle *o = &g->solids.item[i];
+    g->obstacle[g->obstacles++] = (cf_mpm_obstacle){.shape = &o->shape,
+                                                    .motion = o->posed ? &o->motion : NULL,
+                                                    .contact = (cf_mpm_contact)o->keys->contact,
+                                                    .friction = o->keys->friction};
   }
-  g->obstacle[o] = (cf_mpm_obstacle){
-      .shape = &g->shape[o], .contact = (cf_mpm_contact)k->contact, .friction = k->friction};
-  if (k->motion.count == 0 && !k->given.rotation) return CF_OK;
-  g->motion[o] = (cf_motion){.pivot = {at[0], at[1], at[2]}};
-  for (int a = 0; a < 3; ++a) g->motion[o].axis[a] = k->axis.value[a];
-  for (int a = 0; a < k->motion.count; ++a) g->motion[o].shift[a] = k->motion.axis[a].fn;
-  if (k->given.rotation) g->motion[o].angle = k->rotation.fn;
-  g->obstacle[o].motion = &g->motion[o];
-  return CF_OK;
 }
 
 /* --- water ------------------------------------------------------------------------------------------------- */
@@ -109,19 +72,19 @@ static void make_water(cf_gel *g, const int i) {
 /* --- the object -------------------------------------------------------------------------------------------- */
 
 static cf_status make_tables(cf_gel *g) {
-  const int most = 2 * g->grid->box.dim + g->keys->obstacles.count, sources = CF_MAX(1, g->keys->water.count);
+  const int walls = 2 * g->grid->box.dim, most = walls + g->scene->obstacles.count,
+            sources = CF_MAX(1, g->keys->water.count);
   CF_TRY(CF_NEW(&g->material, g->keys->bodies.count));
   CF_TRY(CF_NEW(&g->obstacle, most));
-  CF_TRY(CF_NEW(&g->motion, most));
-  CF_TRY(CF_NEW(&g->shape, most));
-  CF_TRY(CF_NEW(&g->samples, most));
+  CF_TRY(CF_NEW(&g->shape, walls));
   CF_TRY(CF_NEW(&g->source, sources));
   CF_TRY(CF_NEW(&g->place, sources));
   CF_TRY(CF_NEW(&g->dry, sources));
   CF_TRY(CF_NEW(&g->given, sources));
   for (int i = 0; i < g->keys->bodies.count; ++i) g->material[i] = cf_gel_material(&g->keys->bodies.item[i]);
   make_walls(g);
-  for (int i = 0; i < g->keys->obstacles.count; ++i) CF_TRY(make_obstacle(g, i));
+  CF_TRY(cf_obstacles_create(&g->solids, g->scene, g->grid));
+  make_obstacles(g);
   g->sources = g->keys->water.count;
   for (int i = 0; i < g->sources; ++i) make_water(g, i);
   return CF_OK;
@@ -202,9 +165,8 @@ void cf_gel_destroy(void *model) {
   cf_mpm_destroy(g->mpm);
   cf_particles_destroy(g->set);
   for (int i = 0; i < 3; ++i) cf_cell_destroy(&g->on_lattice[i], &g->lattice.box);
-  for (int o = 0; g->samples != NULL && o < g->obstacles; ++o) cf_samples_destroy(&g->samples[o]);
-  void *tables[] = {g->material, g->obstacle, g->motion, g->shape, g->samples,
-                    g->source,   g->place,    g->dry,    g->given};
+  cf_obstacles_destroy(&g->solids);
+  void *tables[] = {g->material, g->obstacle, g->shape, g->source, g->place, g->dry, g->given};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; ++i) cf_free(tables[i]);
   cf_free(g);
 }

@@ -9,7 +9,6 @@
 
 #define CF_GEL_BODY_WORDS(W)     W(BOX, box) W(BALL, ball) W(SLAB, slab) W(IMAGE, image) W(MESH, mesh)
 #define CF_GEL_LAW_WORDS(W)      W(COROTATED, corotated) W(NEO_HOOKEAN, neo_hookean)
-#define CF_GEL_OBSTACLE_WORDS(W) W(PLANE, plane) W(BOX, box) W(BALL, ball) W(MESH, mesh)
 #define CF_GEL_CONTACT_WORDS(W)  W(STICKY, sticky) W(SLIP, slip) W(SEPARATE, separate)
 #define CF_GEL_WALL_WORDS(W)     CF_GEL_CONTACT_WORDS(W) W(NONE, none)
 #define CF_GEL_WATER_WORDS(W)    W(BATH, bath) W(HELD, held) W(RATE, rate)
@@ -18,7 +17,6 @@
 
 enum { CF_GEL_BODY_BOX, CF_GEL_BODY_BALL, CF_GEL_BODY_SLAB, CF_GEL_BODY_IMAGE, CF_GEL_BODY_MESH };
 enum { CF_GEL_LAW_COROTATED, CF_GEL_LAW_NEO_HOOKEAN };
-enum { CF_GEL_OBSTACLE_PLANE, CF_GEL_OBSTACLE_BOX, CF_GEL_OBSTACLE_BALL, CF_GEL_OBSTACLE_MESH };
 enum { CF_GEL_WALL_NONE = 3 }; /* before it the contacts, in the order of cf_mpm_contact */
 enum { CF_GEL_WATER_BATH, CF_GEL_WATER_HELD, CF_GEL_WATER_RATE };
 enum { CF_GEL_PLACE_BOX, CF_GEL_PLACE_BALL, CF_GEL_PLACE_PLANE, CF_GEL_PLACE_EVERYWHERE };
@@ -35,7 +33,7 @@ enum { CF_GEL_TRANSFER_APIC, CF_GEL_TRANSFER_FLIP };
   P(half, numbers, CF_NONE, "m", "1..3 of (0, inf)", "Half of its sides")                                    \
   P(radius, number, CF_NONE, "m", "(0, inf)", "Of a ball")                                                   \
   P(thickness, number, CF_NONE, "m", "(0, inf)", "Of a slab, or of an image in 3D")                          \
-  P(file, text, "", "", "", "Image or mesh, relative to the scene")                                          \
+  P(file, path, CF_NONE, "", "", "Image or mesh, relative to the scene")                                     \
   P(turn, number, "0", "degree", "(-inf, inf)",                                                              \
     "The body is turned by this about `axis` through its middle")                                            \
   P(axis, numbers, "[0, 0, 1]", "", "3 of (-inf, inf)", "What it is turned about")                           \
@@ -59,23 +57,6 @@ enum { CF_GEL_TRANSFER_APIC, CF_GEL_TRANSFER_FLIP };
     "follow "                                                                                                \
     "the water keeps momentum exact")
 
-#define CF_GEL_OBSTACLE_TABLE(P, R)                                                                       \
-  P(shape, word, "box", "", CF_WORDS(CF_GEL_OBSTACLE_WORDS),                                              \
-    "plane (center, normal: the body is on that side), box (center, half), ball (center, radius), mesh "  \
-    "(file)")                                                                                             \
-  P(center, numbers, CF_NONE, "m", "2..3 of (-inf, inf)", "Middle; a point of the plane")                 \
-  P(half, numbers, CF_NONE, "m", "2..3 of (0, inf)", "Half of the sides of the box")                      \
-  P(radius, number, CF_NONE, "m", "(0, inf)", "Of the ball")                                              \
-  P(normal, numbers, CF_NONE, "", "2..3 of (-inf, inf)",                                                  \
-    "Of the plane; left out: along the last axis but z in 2D")                                            \
-  P(file, text, "", "", "", "A closed surface in a PLY or OBJ file, relative to the scene")               \
-  P(contact, word, "separate", "", CF_WORDS(CF_GEL_CONTACT_WORDS),                                        \
-    "sticky: held; slip: along the surface only; separate: may leave it")                                 \
-  P(friction, number, "0", "", "[0, inf)", "Coulomb's coefficient, with slip and separate")               \
-  P(motion, functions, CF_NONE, "m", "", "Where it is moved to, an expression in t an axis")              \
-  P(rotation, function, CF_NONE, "rad", "", "How far it is turned about `axis` through its middle, in t") \
-  P(axis, numbers, "[0, 0, 1]", "", "3 of (-inf, inf)", "What it is turned about")
-
 #define CF_GEL_WATER_TABLE(P, R)                                                                           \
   P(kind, word, "bath", "", CF_WORDS(CF_GEL_WATER_WORDS),                                                  \
     "bath: the body's surface has the saturation `value`; held: all of the body inside the place has it; " \
@@ -96,7 +77,6 @@ enum { CF_GEL_TRANSFER_APIC, CF_GEL_TRANSFER_FLIP };
 
 #define CF_GEL_TABLE(P, R)                                                                                  \
   R(list, bodies, cf_scene_gel_body, "The bodies, each with its material")                                  \
-  R(list, obstacles, cf_scene_gel_obstacle, "What bodies meet, besides the walls")                          \
   R(list, water, cf_scene_gel_water, "Where water is; the first in the list that covers a cell has it")     \
   P(walls, word, "separate", "", CF_WORDS(CF_GEL_WALL_WORDS),                                               \
     "How bodies meet the walls of the domain; none: there are no walls and the domain only says how large " \
@@ -119,9 +99,6 @@ enum { CF_GEL_TRANSFER_APIC, CF_GEL_TRANSFER_FLIP };
 typedef struct cf_scene_gel_body {
   CF_PARAM_MEMBERS(CF_GEL_BODY_TABLE)
 } cf_scene_gel_body;
-typedef struct cf_scene_gel_obstacle {
-  CF_PARAM_MEMBERS(CF_GEL_OBSTACLE_TABLE)
-} cf_scene_gel_obstacle;
 typedef struct cf_scene_gel_water {
   CF_PARAM_MEMBERS(CF_GEL_WATER_TABLE)
 } cf_scene_gel_water;

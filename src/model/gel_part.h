@@ -8,6 +8,7 @@
 
 #include "grid/mesh.h"
 #include "model/model.h"
+#include "model/obstacles.h"
 #include "physics/mpm.h"
 #include "physics/poro.h"
 
@@ -26,10 +27,9 @@ typedef struct cf_gel {
   cf_mpm_attributes at;
   int saturation, jacobian, stress; /* attributes that only frames have */
   cf_mpm_material *material;        /* one a body */
-  cf_mpm_obstacle *obstacle;        /* walls first */
-  cf_motion *motion;
-  cf_shape *shape, *place, *dry; /* of obstacles, of water */
-  cf_samples *samples;           /* of obstacles from files */
+  cf_obstacles solids;
+  cf_mpm_obstacle *obstacle;     /* walls first, then those of the scene */
+  cf_shape *shape, *place, *dry; /* of walls, of water */
   cf_poro_source *source;
   int obstacles, sources;
   cf_mpm *mpm;

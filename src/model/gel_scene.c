@@ -77,28 +77,10 @@ static cf_status check_body(const cf_scene *scene, const int i) {
   if (!mesh && !ball) CF_TRY(need(scene, "bodies", i, b->given.half, "half", shape));
   if (ball) CF_TRY(need(scene, "bodies", i, b->given.radius, "radius", shape));
   if (slab || (image && dim == 3)) CF_TRY(need(scene, "bodies", i, b->given.thickness, "thickness", shape));
-  if (mesh || image) CF_TRY(need(scene, "bodies", i, b->file[0] != '\0', "file", shape));
+  if (mesh || image) CF_TRY(need(scene, "bodies", i, b->given.file, "file", shape));
   CF_TRY(check_count(scene, "bodies", i, "center", &b->center, dim));
   CF_TRY(check_count(scene, "bodies", i, "half", &b->half, slab ? dim - 1 : image ? 2 : dim));
   return check_count(scene, "bodies", i, "velocity", &b->velocity, dim);
-}
-
-static cf_status check_obstacle(const cf_scene *scene, const int i) {
-  static const char *const words[] = {"plane", "box", "ball", "mesh"};
-  const cf_scene_gel_obstacle *o = &scene->gel.obstacles.item[i];
-  const char *shape = words[o->shape];
-  if (o->shape != CF_GEL_OBSTACLE_MESH) CF_TRY(need(scene, "obstacles", i, o->given.center, "center", shape));
-  if (o->shape == CF_GEL_OBSTACLE_BOX) CF_TRY(need(scene, "obstacles", i, o->given.half, "half", shape));
-  if (o->shape == CF_GEL_OBSTACLE_BALL) CF_TRY(need(scene, "obstacles", i, o->given.radius, "radius", shape));
-  if (o->shape == CF_GEL_OBSTACLE_MESH)
-    CF_TRY(need(scene, "obstacles", i, o->file[0] != '\0', "file", shape));
-  CF_TRY(check_count(scene, "obstacles", i, "center", &o->center, scene->dim));
-  CF_TRY(check_count(scene, "obstacles", i, "normal", &o->normal, scene->dim));
-  if (o->motion.count != 0 && o->motion.count != scene->dim)
-    return cf_scene_fail_at(scene, "gel.obstacles",
-                            "gel.obstacles.%d.motion has %d entries, one an axis is wanted", i,
-                            o->motion.count);
-  return check_count(scene, "obstacles", i, "half", &o->half, scene->dim);
 }
 
 static cf_status check_water(const cf_scene *scene, const int i) {
@@ -117,12 +99,11 @@ cf_status cf_gel_resolve(cf_scene *scene) {
   const cf_scene_gel *k = &scene->gel;
   if (k->bodies.count == 0) return cf_scene_fail_at(scene, "gel", "gel.bodies is missing: what is to swell?");
   for (int i = 0; i < k->bodies.count; ++i) CF_TRY(check_body(scene, i));
-  for (int i = 0; i < k->obstacles.count; ++i) CF_TRY(check_obstacle(scene, i));
   for (int i = 0; i < k->water.count; ++i) CF_TRY(check_water(scene, i));
   CF_TRY(check_count(scene, "", -1, "gravity", &k->gravity, scene->dim));
-  if (k->obstacles.count + 2 * scene->dim > CF_MPM_OBSTACLES_MAX)
-    return cf_scene_fail_at(scene, "gel.obstacles", "gel.obstacles: %d are too many, at most %d",
-                            k->obstacles.count, CF_MPM_OBSTACLES_MAX - 2 * scene->dim);
+  if (scene->obstacles.count + 2 * scene->dim > CF_MPM_OBSTACLES_MAX)
+    return cf_scene_fail_at(scene, "obstacles", "obstacles: %d are too many, at most %d",
+                            scene->obstacles.count, CF_MPM_OBSTACLES_MAX - 2 * scene->dim);
   if (k->water.count > CF_PORO_SOURCES_MAX)
     return cf_scene_fail_at(scene, "gel.water", "gel.water: %d are too many, at most %d", k->water.count,
                             CF_PORO_SOURCES_MAX);

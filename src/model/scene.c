@@ -55,11 +55,17 @@ CF_PARAM_TABLE(cf_scene_flow_inlet, CF_FLOW_INLET_TABLE)
 #define CF_PARAM_STRUCT cf_scene_flow
 CF_PARAM_TABLE(cf_scene_flow, CF_FLOW_TABLE)
 #undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_obstacle_stop
+CF_PARAM_TABLE(cf_scene_obstacle_stop, CF_OBSTACLE_STOP_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_obstacle_field
+CF_PARAM_TABLE(cf_scene_obstacle_field, CF_OBSTACLE_FIELD_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_obstacle
+CF_PARAM_TABLE(cf_scene_obstacle, CF_OBSTACLE_TABLE)
+#undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene_gel_body
 CF_PARAM_TABLE(cf_scene_gel_body, CF_GEL_BODY_TABLE)
-#undef CF_PARAM_STRUCT
-#define CF_PARAM_STRUCT cf_scene_gel_obstacle
-CF_PARAM_TABLE(cf_scene_gel_obstacle, CF_GEL_OBSTACLE_TABLE)
 #undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene_gel_water
 CF_PARAM_TABLE(cf_scene_gel_water, CF_GEL_WATER_TABLE)

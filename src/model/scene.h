@@ -23,6 +23,7 @@
 #include "cattaneo.h"
 #include "model/flow_keys.h"
 #include "model/gel_keys.h"
+#include "model/obstacle_keys.h"
 #include "model/phase_keys.h"
 #include "model/render_keys.h"
 #include "model/snowfall_keys.h"
@@ -243,6 +244,7 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
   P(velocity, functions, "0", "m/s", "",                                                                    \
     "The flow, one expression in x, y, z, t an axis, evaluated at the faces; in model flow that at time 0") \
   R(list, sources, cf_scene_source, "What is added to fields, or holds them")                               \
+  R(list, obstacles, cf_scene_obstacle, "Solid bodies: what nothing passes, or what holds scalars")         \
   R(record, flow, cf_scene_flow, "The fluid, of model flow")                                                \
   R(record, gel, cf_scene_gel, "Bodies that swell, of model gel")                                           \
   R(record, phase, cf_scene_phase, "The crystal, of model phase")                                           \

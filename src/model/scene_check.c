@@ -12,6 +12,7 @@
 
 #include "io/scene.h"
 #include "model/model.h"
+#include "model/obstacles.h"
 
 enum { KEY_MAX = 160, FRAMES_MAX = 999999 };
 #define CELLS_MAX 0x1p40
@@ -250,6 +251,7 @@ cf_status cf_scene_resolve(cf_scene *scene) {
   CF_TRY(cf_scene_check_axes(scene, &scene->velocity, scene->given.velocity, scene->dim, "velocity"));
   for (int i = 0; i < scene->sources.count; ++i)
     CF_TRY(check_source(&(cf_source_check){scene, &scene->sources.item[i], i}));
+  CF_TRY(cf_obstacles_resolve(scene));
   if (model->resolve != NULL) CF_TRY(model->resolve(scene));
   CF_TRY(resolve_output_fields(scene));
   return resolve_preview(scene);

@@ -12,6 +12,7 @@
 
 #include "base/mem.h"
 #include "base/real.h"
+#include "model/obstacles.h"
 #include "model/sim.h"
 #include "session/check_scalar.h"
 #include "session/output.h"
@@ -214,6 +215,7 @@ static cf_status write_page(cf_check *c) {
     if (field->given.walls) add_walls(c, "  walls", &field->walls.walls);
   }
   const cf_page page = {.row = row, .warn = warn, .context = c};
+  if (c->fits) CF_TRY(cf_obstacles_check(c->scene, &page));
   return model->check != NULL ? model->check(c->scene, c->dt, &page) : CF_OK;
 }
 

@@ -12,8 +12,11 @@
 #include <unistd.h>
 
 #include "base/real.h"
+#include "model/obstacles.h"
 
-double cf_space_memory(const cf_scene *scene) { return cf_model_of(scene->model)->memory(scene); }
+double cf_space_memory(const cf_scene *scene) {
+  return cf_model_of(scene->model)->memory(scene) + cf_obstacles_memory(scene);
+}
 
 /* The limit of the control group that this process sees as its own, as containers and batch systems set it. */
 static double group_limit(void) {

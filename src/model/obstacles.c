@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Obstacles made of their keys, and placed on the grid at a time.
+ *
+ * Stops of a path are joined by cubics whose slopes are limited (Fritsch, Carlson 1980): nothing swings beyond a stop,
+ * and what stands between two equal stops stands.
+ */
+#include "model/obstacles.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "grid/sweep.h"
+#include "model/surface.h"
+
+#define PI    3.14159265358979323846
+#define PIECE 64 /* cells whose distances are asked for at once */
+
+/* --- motion ------------------------------------------------------------------------------------------------ */
+
+/* What stop i says of a track, m or degrees. */
+static double stop_value(const cf_obstacle_track *k, const int i) {
+  const cf_scene_obstacle_stop *s = &k->of->keys->path.item[i];
+  if (k->which == 3) return s->turn;
+  return k->which < s->place.count ? s->place.value[k->which] - k->of->motion.pivot[k->which] : 0;
+}
+
+static double chord(const cf_obstacle_track *k, const int i) {
+  const cf_scene_obstacle_stop *s = k->of->keys->path.item;
+  return (stop_value(k, i + 1) - stop_value(k, i)) / (s[i + 1].time - s[i].time);
+}
+
+/* The slope at a stop: 0 at the ends and where the path turns back, else the harmonic mean of the chords. */
+static double slope(const cf_obstacle_track *k, const int i) {
+  if (i == 0 || i == k->of->keys->path.count - 1) return 0;
+  const double low = chord(k, i - 1), high = chord(k, i);
+  return low * high > 0 ? 2 * low * high / (low + high) : 0;
+}
+
+static double on_path(const cf_obstacle_track *k, const double t) {
+  const cf_scene_obstacle_stop *s = k->of->keys->path.item;
+  const int last = k->of->keys->path.count - 1;
+  int i = 0;
+  if (t <= s[0].time) return stop_value(k, 0);
+  if (t >= s[last].time) return stop_value(k, last);
+  while (t > s[i + 1].time) ++i;
+  const double w = s[i + 1].time - s[i].time, x = (t - s[i].time) / w, y = 1 - x;
+  return y * y * (1 + 2 * x) * stop_value(k, i) + x * x * (1 + 2 * y) * stop_value(k, i + 1) +
+         w * x * y * (y * slope(k, i) - x * slope(k, i + 1));
+}
+
+/* A cf_fn: m, or rad. */
+static void track_row(const void *context, const int n, const double *x, const double *y, const double *z,
+                      const double t, double *out) {
+  const cf_obstacle_track *k = context;
+  const cf_scene_obstacle *o = k->of->keys;
+  (void)x, (void)y, (void)z;
+  double v = o->path.count > 0 ? on_path(k, t) : 0;
+  if (k->which < 3 && k->which < o->motion.count) v += cf_fn_at(&o->motion.axis[k->which].fn, 0, 0, 0, t);
+  if (k->which == 3) v = (v + o->turn) * PI / 180;
+  if (k->which == 3 && o->given.rotation) v += cf_fn_at(&o->rotation.fn, 0, 0, 0, t);
+  for (int i = 0; i < n; ++i) out[i] = v;
+}
+
+static void make_motion(cf_obstacle *o, const double pivot[3]) {
+  const cf_scene_obstacle *k = o->keys;
+  o->motion = (cf_motion){.pivot = {pivot[0], pivot[1], pivot[2]}};
+  for (int a = 0; a < 3; ++a) {
+    o->motion.axis[a] = k->axis.value[a];
+    if (a < k->pivot.count) o->motion.pivot[a] = k->pivot.value[a];
+  }
+  for (int w = 0; w < 4; ++w) {
+    o->track[w] = (cf_obstacle_track){o, w};
+    cf_fn *fn = w < 3 ? &o->motion.shift[w] : &o->motion.angle;
+    *fn = (cf_fn){.eval = track_row, .context = &o->track[w], .in_time = true};
+  }
+  o->moves = k->motion.count > 0 || k->given.rotation || k->path.count > 0;
+  o->posed = o->moves || k->turn != 0;
+  o->changes = o->moves || (k->shape == CF_OBSTACLE_EXPRESSION && k->distance.fn.in_time);
+}
+
+/* --- shapes ------------------------------------------------------------------------------------------------ */
+
+static void fill(const cf_param_numbers *given, double x[3]) {
+  for (int a = 0; a < 3; ++a) x[a] = a < given->count ? given->value[a] : 0;
+}
+
+static bool is_array(const char *file) {
+  const char *dot = strrchr(file, '.');
+  return dot != NULL && strcmp(dot, ".npy") == 0;
+}
+
+static cf_status read_file(const cf_obstacles *all, cf_obstacle *o, double middle[3]) {
+  const cf_scene_obstacle *k = o->keys;
+  double low[3], high[3];
+  if (!is_array(k->file)) {
+    CF_TRY(cf_surface_read(k->file, &(cf_surface_place){&k->center, &k->half}, all->grid->h, 3, &o->samples,
+                           low, high));
+  } else {
+    for (int a = 0; a < 3; ++a)
+      low[a] = a < k->origin.count ? k->origin.value[a] : cf_grid_place(all->grid, a, 0, 0);
+    CF_TRY(cf_surface_read_distances(k->file, o->dim, k->given.spacing ? k->spacing : all->grid->h, low,
+                                     &o->samples));
+    for (int a = 0; a < 3; ++a)
+      high[a] = low[a] = a < o->dim ? low[a] : 0, high[a] += (o->samples.n[a] - 1) * o->samples.h;
+  }
+  for (int a = 0; a < 3; ++a) middle[a] = (low[a] + high[a]) / 2;
+  return CF_OK;
+}
+
+/* The shape as given; `middle` becomes what it turns about if the scene says nothing else. */
+static cf_status make_shape(const cf_obstacles *all, cf_obstacle *o, double middle[3]) {
+  const cf_scene_obstacle *k = o->keys;
+  double half[3], other[3], n[3];
+  fill(&k->center, middle);
+  fill(&k->half, half);
+  fill(&k->end, other);
+  for (int a = 0; a < 3; ++a)
+    n[a] = a < k->normal.count ? k->normal.value[a] : k->normal.count == 0 && a == o->dim - 1;
+  switch (k->shape) {
+    case CF_OBSTACLE_BOX:
+      o->inner = cf_shape_box(o->dim, middle, half);
+      return CF_OK;
+    case CF_OBSTACLE_CAPSULE:
+      o->inner = cf_shape_capsule(middle, other, k->radius);
+      return CF_OK;
+    case CF_OBSTACLE_PLANE:
+      o->inner = cf_shape_plane(middle, n);
+      return CF_OK;
+    case CF_OBSTACLE_EXPRESSION:
+      o->inner = cf_shape_function(&k->distance.fn);
+      return CF_OK;
+    case CF_OBSTACLE_FILE:
+      CF_TRY(read_file(all, o, middle));
+      o->inner = cf_shape_sampled(&o->samples);
+      return CF_OK;
+    default:
+      o->inner = cf_shape_sphere(middle, k->radius);
+      return CF_OK;
+  }
+}
+
+static cf_status make_obstacle(cf_obstacles *all, const int i) {
+  cf_obstacle *o = &all->item[i];
+  char key[64], sentence[CF_SENTENCE_MAX];
+  double middle[3];
+  o->keys = &all->scene->obstacles.item[i];
+  o->dim = all->grid->box.dim;
+  o->pose = cf_pose_at_rest();
+  const cf_status s = make_shape(all, o, middle);
+  if (s == CF_NO_MEMORY) return s;
+  if (s != CF_OK) {
+    snprintf(key, sizeof key, "obstacles.%d.file", i);
+    snprintf(sentence, sizeof sentence, "%s", cf_status_sentence());
+    return cf_scene_fail_at(all->scene, key, "%s: %s", key, sentence);
+  }
+  o->shape = o->keys->outside ? cf_shape_complement(&o->inner) : o->inner;
+  make_motion(o, middle);
+  all->changes = all->changes || o->changes;
+  return CF_OK;
+}
+
+/* What an obstacle is to a scalar: NULL a wall, else the value it is held at. */
+static const cf_fn *find_held(const cf_scene_obstacle *k, const char *scalar) {
+  for (int f = 0; f < k->fields.count; ++f) {
+    const cf_scene_obstacle_field *own = &k->fields.item[f];
+    if (strcmp(own->name, scalar) != 0) continue;
+    if (own->given.kind && own->kind == CF_OBSTACLE_WALL) return NULL;
+    return own->given.value ? &own->value.fn : &k->value.fn;
+  }
+  return k->kind == CF_OBSTACLE_HELD ? &k->value.fn : NULL;
+}
+
+static cf_status make_held(cf_obstacles *o) {
+  const int fields = o->scene->fields.count;
+  CF_TRY(CF_NEW(&o->held, (ptrdiff_t)fields * o->count));
+  for (int f = 0; f < fields; ++f)
+    for (int i = 0; i < o->count; ++i)
+      o->held[(ptrdiff_t)f * o->count + i] = find_held(o->item[i].keys, o->scene->fields.item[f].name);
+  return CF_OK;
+}
+
+/* --- the object -------------------------------------------------------------------------------------------- */
+
+static cf_status make_owner(const cf_obstacles *o, uint16_t **owner) {
+  const cf_box *b = &o->grid->box;
+  void *pages;
+  CF_TRY(cf_pages_reserve(&pages, (size_t)b->size * sizeof **owner, false));
+  *owner = (uint16_t *)pages + b->first;
+  return CF_OK;
+}
+
+static void free_owner(const cf_obstacles *o, uint16_t *owner) {
+  const cf_box *b = &o->grid->box;
+  if (owner != NULL) cf_pages_release(owner - b->first, (size_t)b->size * sizeof *owner);
+}
+
+cf_status cf_obstacles_create(cf_obstacles *o, const cf_scene *scene, const cf_grid *g) {
+  *o = (cf_obstacles){.scene = scene, .grid = g};
+  if (scene->obstacles.count == 0) return CF_OK;
+  CF_TRY(CF_NEW(&o->item, scene->obstacles.count));
+  o->count = scene->obstacles.count;
+  for (int i = 0; i < o->count; ++i) CF_TRY(make_obstacle(o, i));
+  CF_TRY(make_held(o));
+  CF_TRY(make_owner(o, &o->owner));
+  if (o->changes) CF_TRY(make_owner(o, &o->owner_still));
+  return cf_obstacles_place(o, 0, g->h); /* a length, but any time will do for what is not used yet */
+}
+
+void cf_obstacles_destroy(cf_obstacles *o) {
+  for (int i = 0; i < o->count; ++i) cf_samples_destroy(&o->item[i].samples);
+  if (o->count > 0) free_owner(o, o->owner), free_owner(o, o->owner_still);
+  cf_free(o->item);
+  cf_free(o->held);
+  *o = (cf_obstacles){0};
+}
+
+/* --- placing ----------------------------------------------------------------------------------------------- */
+
+/* Marks the cells [low, high) of a row whose centres are inside obstacle i. */
+static void mark_row(const cf_obstacles *o, const int i, const double t, const int low, const int high,
+                     const int j, const int k, uint16_t *owner) {
+  const cf_grid *g = o->grid;
+  const cf_obstacle *one = &o->item[i];
+  double x[PIECE], y[PIECE], z[PIECE], d[PIECE];
+  for (int from = low; from < high; from += PIECE) {
+    const int n = CF_MIN(PIECE, high - from);
+    const ptrdiff_t p = cf_box_at(&g->box, from, j, k);
+    for (int c = 0; c < n; ++c) {
+      x[c] = cf_grid_place(g, 0, from + c, 0);
+      y[c] = cf_grid_place(g, 1, j, 0);
+      z[c] = g->box.dim == 3 ? cf_grid_place(g, 2, k, 0) : 0;
+    }
+    cf_shape_distance_row(&one->shape, one->posed ? &one->pose : NULL, t, n, x, y, z, d);
+    for (int c = 0; c < n; ++c)
+      if (d[c] <= 0) owner[p + c] = (uint16_t)(i + 1);
+  }
+}
+
+static void mark(const cf_obstacles *o, const int i, const double t, uint16_t *owner) {
+  const cf_obstacle *one = &o->item[i];
+  int low[3], high[3];
+  cf_shape_cells(&one->shape, one->posed ? &one->pose : NULL, o->grid, 0, low, high);
+  const int ny = high[1] - low[1], rows = ny * (high[2] - low[2]);
+#pragma omp parallel for schedule(static) num_threads(o->grid->threads)
+  for (int r = 0; r < rows; ++r) mark_row(o, i, t, low[0], high[0], low[1] + r % ny, low[2] + r / ny, owner);
+}
+
+static void copy_owners(const cf_obstacles *o, const uint16_t *from, uint16_t *to) {
+  const cf_box *b = &o->grid->box;
+  CF_PARALLEL_ROWS (b, o->grid->threads, r) {
+    const ptrdiff_t p = cf_box_row(b, r);
+    memcpy(to + p, from + p, (size_t)b->n[0] * sizeof *to);
+  }
+}
+
+static ptrdiff_t count_solid(const cf_obstacles *o) {
+  const cf_box *b = &o->grid->box;
+  ptrdiff_t solid = 0;
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
+    for (int i = 0; i < b->n[0]; ++i) solid += o->owner[cf_box_row(b, r) + i] != 0;
+  return solid;
+}
+
+cf_status cf_obstacles_place(cf_obstacles *o, const double t, const double dt) {
+  if (o->count == 0 || (o->placed && !o->changes)) return CF_OK;
+  for (int i = 0; i < o->count; ++i) {
+    cf_obstacle *one = &o->item[i];
+    if (one->posed) one->pose = cf_motion_at(&one->motion, t, dt > 0 ? dt : 1e-3);
+    if (!o->placed && !one->changes) mark(o, i, t, o->owner_still != NULL ? o->owner_still : o->owner);
+  }
+  if (o->owner_still != NULL) copy_owners(o, o->owner_still, o->owner);
+  for (int i = 0; i < o->count; ++i)
+    if (o->item[i].changes) mark(o, i, t, o->owner);
+  o->solid = count_solid(o);
+  o->time = t;
+  o->placed = true;
+  return CF_OK;
+}
+
+/* --- what scalars meet ------------------------------------------------------------------------------------- */
+
+static const cf_fn *held_at(const cf_obstacles *o, const int i, const int field) {
+  return field < 0 ? NULL : o->held[(ptrdiff_t)field * o->count + i];
+}
+
+bool cf_obstacles_holds(const cf_obstacles *o, const int field) {
+  for (int i = 0; i < o->count; ++i)
+    if (held_at(o, i, field) != NULL) return true;
+  return false;
+}
+
+bool cf_obstacles_value_in_time(const cf_obstacles *o, const int field) {
+  for (int i = 0; i < o->count; ++i) {
+    const cf_fn *value = held_at(o, i, field);
+    if (value != NULL && value->in_time) return true;
+  }
+  return false;
+}
+
+void cf_obstacles_values(const cf_obstacles *o, const int field, const double t, const cf_cell value) {
+  const cf_grid *g = o->grid;
+  const cf_box *b = &g->box;
+  if (!cf_obstacles_holds(o, field)) return;
+  CF_PARALLEL_ROWS (b, g->threads, r)
+    for (int i = 0; i < b->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(b, r) + i;
+      const cf_fn *fn = o->owner[p] > 0 ? held_at(o, o->owner[p] - 1, field) : NULL;
+      if (fn == NULL) continue;
+      const int j = (int)(r % b->n[1]), k = (int)(r / b->n[1]);
+      value.at[p] = (cf_real)cf_fn_at(fn, cf_grid_place(g, 0, i, 0), cf_grid_place(g, 1, j, 0),
+                                      b->dim == 3 ? cf_grid_place(g, 2, k, 0) : 0, t);
+    }
+}
+
+cf_status cf_obstacles_region(const cf_obstacles *o, const int field, cf_region *region) {
+  const cf_box *b = &o->grid->box;
+  if (o->count == 0) return CF_OK;
+  CF_PARALLEL_ROWS (b, o->grid->threads, r)
+    for (int i = 0; i < b->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(b, r) + i;
+      const int owner = o->owner[p];
+      region->kind[p] = (unsigned char)(owner == 0                             ? CF_CELL_INSIDE
+                                        : held_at(o, owner - 1, field) != NULL ? CF_CELL_HELD
+                                                                               : CF_CELL_WALL);
+    }
+  cf_obstacles_values(o, field, o->time, region->value);
+  return cf_region_update(region);
+}
+
+/* --- what moves -------------------------------------------------------------------------------------------- */
+
+/* The velocity of obstacle i along an axis, at the low face of the cell (i, j, k) on it. */
+static double speed_at(const cf_obstacles *o, const int which, const int axis, const int at[3]) {
+  const cf_obstacle *one = &o->item[which];
+  double place[3], v[3];
+  if (!one->moves) return 0;
+  for (int a = 0; a < 3; ++a)
+    place[a] = a < o->grid->box.dim ? cf_grid_place(o->grid, a, at[a], a == axis) : 0;
+  cf_pose_velocity(&one->pose, place, v);
+  return v[axis];
+}
+
+void cf_obstacles_push(const cf_obstacles *o, const cf_face u) {
+  const cf_box *b = &o->grid->box;
+  if (o->count == 0) return;
+  CF_PARALLEL_ROWS (b, o->grid->threads, r)
+    for (int i = 0; i < b->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(b, r) + i;
+      if (o->owner[p] == 0) continue;
+      const int at[3] = {i, (int)(r % b->n[1]), (int)(r / b->n[1])};
+      for (int a = 0; a < b->dim; ++a) {
+        const bool last = at[a] == b->n[a] - 1;
+        u.at[a][p] = (cf_real)speed_at(o, o->owner[p] - 1, a, at);
+        if (!last && o->owner[p + b->stride[a]] != 0) continue;
+        const int next[3] = {at[0] + (a == 0), at[1] + (a == 1), at[2] + (a == 2)};
+        u.at[a][p + b->stride[a]] = (cf_real)speed_at(o, o->owner[p] - 1, a, next);
+      }
+    }
+}
+
+/* --- distances --------------------------------------------------------------------------------------------- */
+
+static double distance_to(const cf_obstacles *o, const int i, const double place[3]) {
+  const cf_obstacle *one = &o->item[i];
+  return cf_shape_distance(&one->shape, one->posed ? &one->pose : NULL, o->time, place);
+}
+
+double cf_obstacles_distance(const cf_obstacles *o, const double place[3]) {
+  double least = INFINITY;
+  for (int i = 0; i < o->count; ++i) least = CF_MIN(least, distance_to(o, i, place));
+  return least;
+}
+
+void cf_obstacles_normal(const cf_obstacles *o, const double place[3], const double step, double normal[3]) {
+  double least = INFINITY;
+  int nearest = -1;
+  normal[0] = normal[1] = normal[2] = 0;
+  for (int i = 0; i < o->count; ++i) {
+    const double d = distance_to(o, i, place);
+    if (d < least) least = d, nearest = i;
+  }
+  if (nearest < 0) return;
+  const cf_obstacle *one = &o->item[nearest];
+  cf_shape_normal(&one->shape, one->posed ? &one->pose : NULL, o->time, place, step, normal);
+}
