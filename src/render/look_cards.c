@@ -144,7 +144,7 @@ static void dusk(const cf_look *look, const cf_exhibit *e, cf_studio *s) {
   s->sky = (cf_sky){{0.10f, 0.14f, 0.22f}, {0.05f, 0.07f, 0.11f}, {0.02f, 0.02f, 0.03f}};
   s->bounce = 0.6f;
   s->backdrop = (cf_backdrop){night, cf_vec_scale(0.16f, night), {0.5f, 0.55f}, 1.0f};
-  const float fade = (float)(1.1 / deep);
+  const float fade = (float)(2.4 / deep); /* the far side is nearly lost in it */
   s->haze = (cf_haze){{fade, 0.92f * fade, 0.85f * fade}, cf_vec_scale(0.8f, night)};
 }
 
@@ -176,7 +176,8 @@ cf_status cf_draw_cards(const cf_look *look, const cf_exhibit *e, cf_canvas *c) 
   ground g = {.at = NULL};
   if (e->flakes == NULL || e->flakes->kinds == 0) return cf_look_no(look, "flakes with an atlas");
   dusk(look, e, &s);
-  const cf_material snow = {.tint = {1, 1, 1}, .gloss = 0.02f, .roughness = 0.55f, .through = 0.0f};
+  const cf_material snow = {
+      .tint = {0.5f, 0.52f, 0.56f}, .gloss = 0.02f, .roughness = 0.55f, .through = 0.0f};
   cf_status status = make_cards(e->flakes, &all, &picture, &card);
   if (e->flakes->columns[0] > 0) {
     if (status == CF_OK) status = ground_create(e, &g);
