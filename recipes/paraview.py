@@ -1,21 +1,32 @@
 # SPDX-License-Identifier: MIT
-"""A frame of a run in ParaView 5.12 or later, without a display.
+"""A frame of a run in ParaView, without a display.
 
     pvpython recipes/paraview.py RUN [--frame N] [-o PICTURE.png] [--size 1280x720] [--field NAME] [--state FILE.pvsm]
 
 RUN is a run's folder written with output.formats: [vtkhdf]. Shown is what it holds of the frame (the last one if none is
 named): fields_000012.vtkhdf as a coloured plane (2D) or a volume (3D), mesh_000012.vtkhdf as a surface,
 particles_000012.vtkhdf (and particles_SET_...) as points. --state keeps the scene for going on in the window.
+
+Where ParaView was built to draw on a display only, as Debian's is, one is lent by: xvfb-run -a pvpython ...
+
+ParaView opens these files itself from 5.12 on, also in its window. Versions before that (Debian 12 has 5.11) know
+neither values of cells nor points and surfaces in them: here they are read with h5py, and --state is refused.
 """
 import argparse
 import os
 import re
 import sys
 
-import paraview
+sys.path[:] = [p for p in sys.path if os.path.realpath(p or ".") != os.path.dirname(os.path.realpath(__file__))]
+from paraview import simple as pv  # noqa: E402, and not this file, which has its name
+from vtkmodules.util import numpy_support  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkPoints  # noqa: E402
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData  # noqa: E402
 
-paraview.compatibility.major = 5
-from paraview import simple as pv  # noqa: E402
+VERSION = pv.GetParaViewVersion()
+READS_ALL = (int(VERSION.major), int(VERSION.minor)) >= (5, 12)
+if not READS_ALL:
+    import h5py
 
 
 def find_frame(folder, frame):
@@ -40,8 +51,51 @@ def colour(display, view, where, name):
     display.SetScalarBarVisibility(view, True)
 
 
+def add_arrays(data, group):
+    for name, values in group.items():
+        values = values[()]
+        flat = values.reshape(-1, values.shape[-1]) if values.ndim in (2, 4) else values.ravel()
+        array = numpy_support.numpy_to_vtk(flat, deep=True)
+        array.SetName(name)
+        data.AddArray(array)
+
+
+def read_image(root):
+    image = vtkImageData()
+    image.SetExtent([int(n) for n in root.attrs["WholeExtent"]])
+    image.SetOrigin(root.attrs["Origin"])
+    image.SetSpacing(root.attrs["Spacing"])
+    add_arrays(image.GetCellData(), root["CellData"])
+    return image
+
+
+def read_polygons(root):
+    data = vtkPolyData()
+    points = vtkPoints()
+    points.SetData(numpy_support.numpy_to_vtk(root["Points"][()], deep=True))
+    data.SetPoints(points)
+    for word, put in (("Vertices", data.SetVerts), ("Polygons", data.SetPolys)):
+        cells = vtkCellArray()
+        parts = [root[word][name][()].astype("i8") for name in ("Offsets", "Connectivity")]
+        cells.SetData(*(numpy_support.numpy_to_vtkIdTypeArray(p, deep=True) for p in parts))
+        put(cells)
+    add_arrays(data.GetPointData(), root["PointData"])
+    return data
+
+
+def open_frame(path):
+    if READS_ALL:
+        return pv.OpenDataFile(path)
+    with h5py.File(path) as file:
+        root = file["VTKHDF"]
+        data = read_image(root) if root.attrs["Type"] == b"ImageData" else read_polygons(root)
+    source = pv.TrivialProducer()
+    source.GetClientSideObject().SetOutput(data)
+    return source
+
+
 def show_fields(path, view, wanted):
-    source = pv.OpenDataFile(path)
+    source = open_frame(path)
     source.UpdatePipeline()
     names = [source.CellData.GetArray(i).GetName() for i in range(len(source.CellData))]
     name = wanted or names[0]
@@ -58,7 +112,7 @@ def show_fields(path, view, wanted):
 
 
 def show_points(path, view, points):
-    source = pv.OpenDataFile(path)
+    source = open_frame(path)
     source.UpdatePipeline()
     display = pv.Show(source, view)
     if points:
@@ -79,6 +133,8 @@ def main():
     parser.add_argument("--field")
     parser.add_argument("--state")
     o = parser.parse_args()
+    if o.state and not READS_ALL:
+        sys.exit(f"--state: ParaView {VERSION.major}.{VERSION.minor} cannot open these files again; 5.12 can")
     files, frame = find_frame(o.run, o.frame)
     view = pv.CreateView("RenderView")
     view.ViewSize = o.size

@@ -13,7 +13,7 @@
 #include "render/colormap.h"
 #include "render/turn.h"
 
-enum { RANGE_FRAMES = 12 }; /* looked at for a film's range */
+enum { RANGE_FRAMES = 12, /* looked at for a film's range */ WIDTH = 1280, HEIGHT = 720 };
 
 /* --- how ------------------------------------------------------------------------------------------------------------- */
 
@@ -77,8 +77,9 @@ static void take_look(cf_showing *s, const cf_arguments *a) {
   const cf_scene_camera *c = &r->camera;
   cf_look *l = &s->look;
   *l = cf_look_default(l->style);
-  l->width = a->width > 0 ? a->width : (int)r->size.value[0];
-  l->height = a->height > 0 ? a->height : (int)r->size.value[1];
+  l->framed = a->width > 0 || r->size.count == 2;
+  l->width = a->width > 0 ? a->width : l->framed ? (int)r->size.value[0] : WIDTH;
+  l->height = a->height > 0 ? a->height : l->framed ? (int)r->size.value[1] : HEIGHT;
   l->samples = (int)r->samples;
   l->threads = a->threads > 0 ? a->threads : omp_get_num_procs();
   l->exposure = r->exposure, l->strength = r->strength, l->level = r->level;

@@ -48,7 +48,8 @@
   P(surface, text, "", "", "",                                                                              \
     "The field whose surface is shown where the run wrote no mesh; left out: output.preview.field")         \
   P(level, number, "0.5", "", "(-inf, inf)", "The value of that field on the surface")                      \
-  P(size, integers, "[1280, 720]", "", "2 of [16, 16384]", "Width and height in pixels")                    \
+  P(size, integers, CF_NONE, "", "2 of [16, 16384]",                                                        \
+    "Width and height in pixels; left out: 1280 and 720, or with style field the shape of the plane")       \
   P(samples, integer, "16", "", "[1, 65536]", "Rays a pixel: noise falls with their root")                  \
   P(range, numbers_or_auto, "auto", "", "2 of (-inf, inf)",                                                 \
     "Values at the ends of the colours, or of clear and densest; auto: of all frames that are shown")       \

@@ -42,17 +42,18 @@ cf_style cf_style_find(const char *name);
 typedef struct cf_look {
   cf_style style;
   int width, height, samples, threads;
-  double exposure;                 /* stops */
-  double low, high;                /* of the values */
-  double strength;                 /* ink, smoke: depth of a tenth of the box at the upper end of the range */
-  double level;                    /* of the surface, where it is made of a field */
-  double colour[3];                /* linear light: what ink lets through, what a surface sends back */
-  double background[3];            /* linear light */
-  const char *map;                 /* of colours */
-  double turn, rise;               /* of the camera around what it looks at, degrees */
-  double angle, zoom;              /* of view, degrees; how much nearer */
-  double eye[3], aim[3];           /* instead of turn and rise; m */
-  double focus, aperture, shutter; /* m, m, s */
+  bool framed;           /* the picture has just that size; false: style field takes the shape of its plane */
+  double exposure;       /* stops */
+  double low, high;      /* of the values */
+  double strength;       /* ink, smoke: depth of a tenth of the box at the upper end of the range */
+  double level;          /* of the surface, where it is made of a field */
+  double colour[3];      /* linear light: what ink lets through, what a surface sends back */
+  double background[3];  /* linear light */
+  const char *map;       /* of colours */
+  double turn, rise;     /* of the camera around what it looks at, degrees */
+  double angle, zoom;    /* of view, degrees; how much nearer */
+  double eye[3], aim[3]; /* instead of turn and rise; m */
+  double focus, aperture, shutter;                             /* m, m, s */
   double light_turn, light_rise, light_strength, light_spread; /* degrees, times the usual */
   int contours;           /* field: how many lines of equal value; 0: none */
   bool floor;             /* surfaces and particles stand on one */

@@ -13,6 +13,7 @@ cf_status cf_draw_field(const cf_look *look, const cf_exhibit *e, cf_canvas *c) 
   p.time = e->time;
   p.map = look->map;
   p.size = CF_MAX(look->width, look->height);
+  if (look->framed) p.frame[0] = look->width, p.frame[1] = look->height;
   p.lines = e->lines, p.line = e->line;
   p.contours = look->contours;
   if (x != NULL && y != NULL) p.arrows[0] = x->at, p.arrows[1] = y->at;

@@ -46,7 +46,10 @@ static int even(const double v) { return 2 * (int)ceil(v / 2); } /* films want e
 /* Margins first, then the largest plot that fits, then the picture around it. */
 static layout lay_out(const cf_plane *plane, const cf_scale *scale, const cf_preview *p) {
   layout l = {.width = 0};
-  const int size = CF_MIN(CF_MAX(p->size > 0 ? p->size : SIZE_USUAL, SIZE_LEAST), SIZE_MOST);
+  const bool framed = p->frame[0] > 0 && p->frame[1] > 0;
+  const int wanted = framed ? CF_MAX(p->frame[0], p->frame[1]) : p->size > 0 ? p->size : SIZE_USUAL;
+  const int size = CF_MIN(CF_MAX(wanted, SIZE_LEAST), SIZE_MOST);
+  const int wide = framed ? p->frame[0] : size, high = framed ? p->frame[1] : size;
   l.font = CF_MAX(round(size / 64.0), 11);
   l.plot = (cf_plot){.width = size, .height = size, .font = l.font, .plane = plane};
   const bool titled = p->title != NULL && p->title[0] != '\0';
@@ -55,20 +58,22 @@ static layout lay_out(const cf_plane *plane, const cf_scale *scale, const cf_pre
   const double beside = (thin ? 2.8 : 1.2) * l.font;
   const double right = beside + cf_plot_bar_room(l.font, scale, size) + 0.8 * l.font;
   const double top = (titled ? 2.2 : 0.2) * l.font + 2.6 * l.font, bottom = 4.0 * l.font;
-  double pixels = CF_MIN((size - left - right) / plane->n[0], (size - top - bottom) / plane->n[1]);
+  double pixels = CF_MIN((wide - left - right) / plane->n[0], (high - top - bottom) / plane->n[1]);
   if (p->cells && pixels > 1) pixels = floor(pixels);
   l.plot.width = CF_MAX((int)(pixels * plane->n[0]), 2);
   l.plot.height = CF_MAX((int)(pixels * plane->n[1]), 2);
   l.width = CF_MIN(even(CF_MAX(l.plot.width + left + right, 0.4 * size)), even(size));
   const double band = CF_MAX(l.plot.height, BAR_LEAST * l.font); /* a thin plot lies in the middle of it */
   l.height = CF_MAX(CF_MIN(even(l.plot.height + top + bottom), even(size)), even(band + top + bottom));
+  const double down = framed ? CF_MAX(high - l.height, 0) / 2 : 0;
+  if (framed) l.width = wide, l.height = high;
   l.plot.x = (int)round(left + CF_MAX(l.width - left - right - l.plot.width, 0) / 2);
-  l.plot.y = (int)round(top + (band - l.plot.height) / 2);
+  l.plot.y = (int)round(down + top + (band - l.plot.height) / 2);
   l.bar[0] = l.plot.x + l.plot.width + (int)round(beside);
-  l.bar[1] = (int)round(top);
+  l.bar[1] = (int)round(down + top);
   l.bar[2] = (int)round(1.2 * l.font);
   l.bar[3] = (int)round(band);
-  l.title_line = 2.1 * l.font;
+  l.title_line = down + 2.1 * l.font;
   l.caption_line = l.bar[1] - 0.9 * l.font;
   l.room = l.width - l.plot.x - 0.8 * l.font;
   return l;

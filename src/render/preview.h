@@ -38,8 +38,9 @@ typedef struct cf_preview {
   double time;       /* s; NaN: not shown */
   const char *map;   /* NULL: by the rule above */
   double low, high;
-  int size;             /* pixels of the longer side; 0: 900 */
-  bool cells;           /* show every cell as a square; else smooth in between */
+  int size;     /* pixels of the longer side; 0: 900 */
+  int frame[2]; /* width and height of the picture, with the plot in its middle; 0: what the plot takes */
+  bool cells;   /* show every cell as a square; else smooth in between */
   cf_preview_view view; /* 3D only */
   int axis;             /* 3D only: the axis looked along, 0..2; 3: none given, z */
   int lines;

@@ -65,6 +65,13 @@ def main():
     if command is None:
         print(f"{viewer} is not installed")
         sys.exit(77)
+    command = [command]
+    if viewer == "paraview" and "DISPLAY" not in os.environ:
+        lent = shutil.which("xvfb-run")
+        if lent is None:
+            print("there is no display, nor xvfb-run to lend one")
+            sys.exit(77)
+        command = [lent, "-a", *command]
     scratch = os.path.join(folder, "recipes-" + viewer)
     shutil.rmtree(scratch, ignore_errors=True)
     os.makedirs(scratch)
@@ -76,10 +83,10 @@ def main():
         subprocess.run([program, "run", path, "-o", run, "--progress", "none"], check=True, stdout=subprocess.DEVNULL)
         if viewer == "blender":
             words = ["grids: density, vel"] if name == "puff" else ["shown: surface, particles", "disc.rgba.png"]
-            shown([command, "-b", "--factory-startup", "-P", os.path.join(recipes, "blender.py"), "--", run, "-o", picture,
+            shown([*command, "-b", "--factory-startup", "-P", os.path.join(recipes, "blender.py"), "--", run, "-o", picture,
                    "--size", "160x90", "--samples", "4"], picture, words)
         else:
-            shown([command, os.path.join(recipes, "paraview.py"), run, "-o", picture, "--size", "320x180"], picture,
+            shown([*command, os.path.join(recipes, "paraview.py"), run, "-o", picture, "--size", "320x180"], picture,
                   ["shown: "])
 
 

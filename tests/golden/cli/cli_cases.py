@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -85,6 +86,9 @@ class Help(Case):
             "explain": "",
             "examples": "force",
             "info": "",
+            "render": "output set columns field style frame size threads",
+            "movie": "output set field style size fps threads progress",
+            "atlas": "output radius pixels force",
         }
         for command, names in options.items():
             page = self.call("help", command)
@@ -293,6 +297,66 @@ class Pages(Case):
                 done = subprocess.run([PROGRAM, *words], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual(done.returncode, 1, words)
             self.assertIn("could not be written", done.stderr)
+
+
+class Pictures(Case):
+    def run_ring(self):
+        self.call("run", self.scene(), "-o", "ring", "--progress", "none")
+
+    def size(self, path):
+        """Width and height as a PNG file says them."""
+        head = (self.folder / path).read_bytes()[:24]
+        self.assertEqual(head[:8], b"\x89PNG\r\n\x1a\n")
+        return int.from_bytes(head[16:20], "big"), int.from_bytes(head[20:24], "big")
+
+    def test_render_names_the_picture_on_stdout_and_makes_only_that(self):
+        self.run_ring()
+        before = self.there()
+        done = self.call("render", "ring")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "ring/render_000005.png\n", ""))
+        self.assertEqual(sorted(set(self.there()) - set(before)), ["ring/render_000005.png"])
+        wide, high = self.size("ring/render_000005.png")
+        self.assertEqual(wide, 1280)
+        self.assertLess(abs(high - wide), 60, "a square plane")
+
+    def test_render_takes_frame_size_and_name(self):
+        self.run_ring()
+        done = self.call("render", "ring", "--frame", "2", "--size", "320x200", "-o", "two.png")
+        self.assertEqual((done.returncode, done.stdout), (0, "two.png\n"), done.stderr)
+        self.assertEqual(self.size("two.png"), (320, 200))
+
+    def test_pictures_are_the_same_bytes_for_any_number_of_threads(self):
+        self.run_ring()
+        for threads in ("1", "3"):
+            self.call("render", "ring", "--size", "300x200", "--threads", threads, "-o", f"{threads}.png")
+        self.assertEqual((self.folder / "1.png").read_bytes(), (self.folder / "3.png").read_bytes())
+
+    def test_render_refuses_what_it_cannot_show(self):
+        self.run_ring()
+        self.refuses("render", "nowhere", says="nowhere")
+        self.refuses("render", "ring", "--frame", "9", says="has 6 frames, from 0 to 5")
+        self.refuses("render", "ring", "--style", "inc", says="did you mean ink?")
+        self.refuses("render", "ring", "--field", "ph", says="phi")
+        self.refuses("render", "ring", "--size", "9x", says="--size")
+
+    def test_a_movie_is_whole_or_not_there(self):
+        self.run_ring()
+        self.refuses("movie", "ring", "--fps", "0", says="--fps")
+        nothing = {**os.environ, "PATH": str(self.folder)}
+        done = self.call("movie", "ring", environment=nothing)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("ffmpeg", done.stderr)
+        self.assertFalse((self.folder / "ring/movie.mp4").exists())
+        if shutil.which("ffmpeg"):
+            done = self.call("movie", "ring", "--size", "160x120", "--progress", "none")
+            self.assertEqual((done.returncode, done.stdout), (0, "ring/movie.mp4\n"), done.stderr)
+            self.assertIn(b"ftyp", (self.folder / "ring/movie.mp4").read_bytes()[:12])
+
+    def test_an_atlas_is_made_of_crystals(self):
+        self.run_ring()
+        self.refuses("atlas", "ring", says="-o DIR is missing")
+        self.refuses("atlas", "ring", "-o", "atlas", says="is no run of model phase")
+        self.refuses("atlas", "ring", "-o", "atlas", "--radius", "2 s", says="must be a length above 0")
 
 
 class Runs(Case):
