@@ -31,6 +31,7 @@
 
 #include "grid/sweep.h"
 #include "model/flow_part.h"
+#include "stencil/courant.h"
 
 /* --- the middle velocity ---------------------------------------------------------------------------------- */
 
@@ -147,6 +148,14 @@ static cf_status project(cf_flow *m, const double dt, cf_step_report *report) {
   return cf_flow_find_rate(m);
 }
 
+/* The velocity of a step ago gets ghosts; the others have theirs. */
+static cf_status move_points(cf_flow *m, const double t, const double dt) {
+  const cf_drift flow = cf_flow_drift(m);
+  if (m->points.set == NULL) return CF_OK;
+  cf_courant_ghosts(m->grid, flow.wraps, m->before);
+  return cf_drifters_step(&m->points, &flow, t, dt);
+}
+
 static cf_status flow_step(void *model, const double t, const double dt, cf_step_report *report) {
   cf_flow *m = model;
   const bool sticky = m->viscosity != NULL;
@@ -174,7 +183,9 @@ static cf_status flow_step(void *model, const double t, const double dt, cf_step
   if (!sticky) CF_TRY(push_half(m, t + dt, dt));
   clock = cf_stage_end(report, CF_STAGE_FORCE, clock);
   CF_TRY(project(m, dt, report));
-  cf_stage_end(report, CF_STAGE_PROJECT, clock);
+  clock = cf_stage_end(report, CF_STAGE_PROJECT, clock);
+  CF_TRY(move_points(m, t, dt));
+  cf_stage_end(report, CF_STAGE_TRANSFER, clock);
   return CF_OK;
 }
 
@@ -185,7 +196,7 @@ static bool flow_describe(const void *model, const int line, char *text, const s
 }
 
 static const char *const flow_keys[] = {"flow",     "diffusion", "advection", "fields",
-                                        "velocity", "sources",   NULL};
+                                        "velocity", "sources",   "points",    NULL};
 
 const cf_model cf_model_flow = {
     .name = "flow",
@@ -203,6 +214,7 @@ const cf_model cf_model_flow = {
     .step = flow_step,
     .derived = cf_flow_derived,
     .derive = cf_flow_derive,
+    .show = cf_flow_show,
     .metric_names = cf_flow_metric_names,
     .metrics = cf_flow_metrics,
 };

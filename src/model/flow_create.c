@@ -146,7 +146,9 @@ static cf_status make(cf_flow *m, cf_registry *r) {
   CF_TRY(start(m));
   open_scalars(m);
   CF_TRY(cf_scalars_make(&m->scalars, isnan(scene->time.dt) ? cf_flow_natural_dt(m, 0) : scene->time.dt, r));
-  return register_flow(m, r);
+  CF_TRY(register_flow(m, r));
+  CF_TRY(cf_drifters_create(&m->points, scene, m->grid));
+  return cf_drifters_start(&m->points, r);
 }
 
 void cf_flow_destroy(void *model) {
@@ -154,6 +156,7 @@ void cf_flow_destroy(void *model) {
   if (m == NULL) return;
   const cf_box *b = &m->grid->box;
   cf_scalars_destroy(&m->scalars);
+  cf_drifters_destroy(&m->points);
   cf_project_destroy(m->project);
   cf_force_destroy(m->force);
   cf_viscosity_destroy(m->viscosity);

@@ -11,6 +11,7 @@
 #ifndef CF_MODEL_FLOW_PART_H
 #define CF_MODEL_FLOW_PART_H
 
+#include "model/drifters.h"
 #include "model/scalars.h"
 #include "physics/confine.h"
 #include "physics/force.h"
@@ -39,6 +40,8 @@ typedef struct cf_flow {
   cf_face middle; /* velocity in the middle of the step: scratch */
   cf_face push;   /* acceleration, where viscosity wants it; scratch */
   double rate;    /* of u, for the length of the next step */
+
+  cf_drifters points;
 } cf_flow;
 
 cf_status cf_flow_create(void **model, const cf_scene *scene, cf_registry *registry);
@@ -48,6 +51,9 @@ double cf_flow_natural_dt(const void *model, double t);
 
 /* The rate at which u empties cells, as it is now. CF_NOT_FINITE. */
 cf_status cf_flow_find_rate(cf_flow *m);
+
+/* What carries points: the velocities of the step. */
+cf_drift cf_flow_drift(const cf_flow *m);
 
 /* The walls' velocities at time t. CF_BAD_SCENE: more comes in than goes out and no wall is open. */
 cf_status cf_flow_walls_of_scene(cf_flow *m);
@@ -68,5 +74,6 @@ bool cf_flow_derived(const void *model, int i, cf_derived *field);
 cf_status cf_flow_derive(void *model, int i, cf_cell out);
 int cf_flow_metric_names(const void *model, cf_metric *names);
 void cf_flow_metrics(const void *model, double *values);
+cf_status cf_flow_show(void *model);
 
 #endif

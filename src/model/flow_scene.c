@@ -113,6 +113,7 @@ cf_status cf_flow_resolve(cf_scene *scene) {
   for (int i = 0; i < f->walls.count; ++i) CF_TRY(resolve_wall(scene, i));
   for (int i = 0; i < f->inlets.count; ++i) CF_TRY(check_inlet(scene, i));
   CF_TRY(check_velocity(scene));
+  CF_TRY(cf_drifters_resolve(scene));
   return check_buoyancy(scene);
 }
 
@@ -138,6 +139,7 @@ cf_status cf_flow_check(const cf_scene *scene, const double dt, const cf_page *p
              scene->flow.viscosity, scene->flow.viscosity / size, size);
     page->row(page->context, "viscosity", text);
   }
+  cf_drifters_check(scene, page);
   return CF_OK;
 }
 
@@ -145,7 +147,7 @@ bool cf_flow_shows(const cf_scene *scene, const char *name) {
   static const char *const shown[] = {"velocity", "pressure", "vorticity", "speed", NULL};
   for (int i = 0; shown[i] != NULL; ++i)
     if (strcmp(name, shown[i]) == 0) return true;
-  if (strcmp(name, "H_c") == 0) return true;
+  if (strcmp(name, "H_c") == 0 || cf_drifters_shows(scene, name)) return true;
   return strncmp(name, "H_c_", 4) == 0 && cf_scene_field_index(scene, name + 4) >= 0;
 }
 
@@ -157,5 +159,5 @@ double cf_flow_memory(const cf_scene *scene) {
   if (scene->flow.given.force) fields += dim;
   if (scene->flow.confinement > 0) fields += dim + 1;
   if (scene->flow.viscosity > 0) fields += 2 + dim * (8 + 8 * coarse);
-  return cf_scalars_bytes(scene, fields + cf_scalars_memory(scene));
+  return cf_scalars_bytes(scene, fields + cf_scalars_memory(scene)) + cf_drifters_memory(scene);
 }

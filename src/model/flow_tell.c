@@ -76,7 +76,7 @@ int cf_flow_metric_names(const void *model, cf_metric *names) {
   const cf_flow *m = model;
   const int count = cf_scalars_metric_names(&m->scalars, names);
   for (int i = 0; i < OWN; ++i) snprintf(names[count + i].name, CF_NAME_MAX, "%s", own[i]);
-  return count + OWN;
+  return count + OWN + cf_drifters_metric_names(&m->points, names + count + OWN);
 }
 
 /* Integral of u^2/2, every component on its own volumes (half ones on walls), and the largest speed at a cell. */
@@ -108,4 +108,24 @@ void cf_flow_metrics(const void *model, double *values) {
   cf_scalars_metrics(&m->scalars, values);
   v[0] = cf_project_divergence(m->project, m->u);
   find_energy(m, &v[1], &v[2]);
+  (void)cf_drifters_metrics(&m->points, v + OWN);
+}
+
+/* --- points ----------------------------------------------------------------------------------------------- */
+
+cf_drift cf_flow_drift(const cf_flow *m) {
+  cf_drift d = {.grid = m->grid, .u = {m->before, m->middle, m->u}};
+  for (int a = 0; a < m->grid->box.dim; ++a) {
+    d.wraps[a] = m->walls.kind[a][0] == CF_FLOW_PERIODIC;
+    for (int side = 0; side < 2; ++side)
+      d.open[a][side] = m->walls.kind[a][side] == CF_FLOW_OPEN || m->walls.lets_in[a][side];
+  }
+  return d;
+}
+
+cf_status cf_flow_show(void *model) {
+  const cf_flow *m = model;
+  const cf_drift flow = cf_flow_drift(m);
+  cf_drifters_show(&m->points, &flow);
+  return CF_OK;
 }

@@ -25,6 +25,7 @@
 #include "model/gel_keys.h"
 #include "model/obstacle_keys.h"
 #include "model/phase_keys.h"
+#include "model/points_keys.h"
 #include "model/render_keys.h"
 #include "model/snowfall_keys.h"
 
@@ -245,6 +246,7 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
     "The flow, one expression in x, y, z, t an axis, evaluated at the faces; in model flow that at time 0") \
   R(list, sources, cf_scene_source, "What is added to fields, or holds them")                               \
   R(list, obstacles, cf_scene_obstacle, "Solid bodies: what nothing passes, or what holds scalars")         \
+  R(list, points, cf_scene_points, "Points that the flow carries along")                                    \
   R(record, flow, cf_scene_flow, "The fluid, of model flow")                                                \
   R(record, gel, cf_scene_gel, "Bodies that swell, of model gel")                                           \
   R(record, phase, cf_scene_phase, "The crystal, of model phase")                                           \

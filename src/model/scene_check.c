@@ -200,14 +200,18 @@ static cf_status check_keys(const cf_scene *scene) {
 static cf_status default_outputs(cf_scene *scene) {
   const char *const *own = cf_model_of(scene->model)->outputs;
   cf_param_texts *fields = &scene->output.fields;
+  const bool points = own == NULL && scene->points.count > 0;
   int count = scene->fields.count;
   void *block;
   if (own != NULL)
     for (count = 0; own[count] != NULL;) ++count;
+  count += points;
   CF_TRY(cf_config_new(scene->config, &block, (size_t)count * sizeof *fields->item));
   fields->item = block;
   fields->count = count;
-  for (int i = 0; i < count; ++i) fields->item[i] = own != NULL ? own[i] : scene->fields.item[i].name;
+  for (int i = 0; i < count - points; ++i)
+    fields->item[i] = own != NULL ? own[i] : scene->fields.item[i].name;
+  if (points) fields->item[count - 1] = "points";
   scene->output.given.fields = true;
   return CF_OK;
 }

@@ -19,7 +19,9 @@
 #include "base/mem.h"
 #include "grid/sweep.h"
 #include "grid/wall.h"
+#include "model/drifters.h"
 #include "model/scalars.h"
+#include "stencil/courant.h"
 
 typedef struct cf_tracer {
   cf_scalars scalars;
@@ -27,6 +29,8 @@ typedef struct cf_tracer {
   double fastest;       /* largest component of the velocity on any face, m/s */
   double through_walls; /* largest that stood on an insulated wall */
   cf_face u;
+  cf_drifters points;
+  cf_face at[3]; /* for points in a flow that changes: at the beginning, middle and end of a step */
 } cf_tracer;
 
 /* --- the velocity ----------------------------------------------------------------------------------------- */
@@ -39,7 +43,7 @@ static const cf_function *velocity_of(const cf_scene *scene, const int axis) {
 #define ROUND_OFF 1e-9
 
 /* The largest component of u on any face. */
-static double fastest(const cf_tracer *m) {
+static double fastest(const cf_tracer *m, const cf_face field) {
   const cf_box *box = &m->scalars.grid->box;
   double largest = 0;
   for (int a = 0; a < box->dim; ++a) {
@@ -47,7 +51,7 @@ static double fastest(const cf_tracer *m) {
     const int threads = cf_sweep_threads(box, m->scalars.grid->threads), n = cf_box_extent(box, 0, a);
 #pragma omp parallel for schedule(static) num_threads(threads) reduction(max : largest)
     for (ptrdiff_t r = 0; r < rows; ++r) {
-      const cf_real *u = m->u.at[a] + cf_box_face_row(box, a, r);
+      const cf_real *u = field.at[a] + cf_box_face_row(box, a, r);
       for (int i = 0; i < n; ++i) largest = CF_MAX(largest, fabs((double)u[i]));
     }
   }
@@ -56,17 +60,17 @@ static double fastest(const cf_tracer *m) {
 
 /* Sets u.n = 0 on the insulated walls of the domain; returns the largest value that stood there, 0 if that is no more
  * than round-off. */
-static double close_walls(cf_tracer *m) {
+static double close_walls(cf_tracer *m, const cf_face field) {
   const cf_box *box = &m->scalars.grid->box;
   double largest = 0;
-  m->fastest = fastest(m);
+  m->fastest = fastest(m, field);
   for (int a = 0; a < box->dim; ++a)
     for (int side = 0; side < 2; ++side) {
       if (m->scalars.scene->domain.walls.walls.kind[a][side] != CF_WALL_INSULATED) continue;
       const cf_wall_side w = cf_wall_side_of(box, a, side);
       for (int i_c = 0; i_c < w.n_c; ++i_c)
         for (int i_b = 0; i_b < w.n_b; ++i_b) {
-          cf_real *u = &m->u.at[a][cf_wall_cell(box, &w, i_b, i_c) + (side == 0 ? 0 : w.outward)];
+          cf_real *u = &field.at[a][cf_wall_cell(box, &w, i_b, i_c) + (side == 0 ? 0 : w.outward)];
           largest = CF_MAX(largest, fabs((double)*u));
           *u = 0;
         }
@@ -74,11 +78,16 @@ static double close_walls(cf_tracer *m) {
   return largest > ROUND_OFF * m->fastest ? largest : 0;
 }
 
-static cf_status set_velocity(cf_tracer *m, const double t) {
+static cf_status sample_velocity(cf_tracer *m, const double t, const cf_face u) {
   const cf_grid *g = m->scalars.grid;
   for (int a = 0; a < g->box.dim; ++a)
-    CF_TRY(cf_grid_sample(g, &velocity_of(m->scalars.scene, a)->fn, a, t, m->u.at[a]));
-  m->through_walls = close_walls(m);
+    CF_TRY(cf_grid_sample(g, &velocity_of(m->scalars.scene, a)->fn, a, t, u.at[a]));
+  m->through_walls = close_walls(m, u);
+  return CF_OK;
+}
+
+static cf_status set_velocity(cf_tracer *m, const double t) {
+  CF_TRY(sample_velocity(m, t, m->u));
   return cf_scalars_set_velocity(&m->scalars, m->u);
 }
 
@@ -124,6 +133,54 @@ static cf_status check_walls(const cf_tracer *m, const cf_scalar *s) {
   return CF_OK;
 }
 
+/* --- points ----------------------------------------------------------------------------------------------- */
+
+static cf_drift drift_of(const cf_tracer *m) {
+  const cf_walls *walls = &m->scalars.scene->domain.walls.walls;
+  cf_drift d = {.grid = m->scalars.grid};
+  for (int when = 0; when < 3; ++when) d.u[when] = m->at[when].at[0] != NULL ? m->at[when] : m->u;
+  for (int a = 0; a < d.grid->box.dim; ++a) {
+    d.wraps[a] = walls->kind[a][0] == CF_WALL_PERIODIC;
+    for (int side = 0; side < 2; ++side) d.open[a][side] = walls->kind[a][side] != CF_WALL_INSULATED;
+  }
+  return d;
+}
+
+/* The velocity at time t into the field of the points that is for `when`. */
+static cf_status sample_for_points(cf_tracer *m, const int when, const double t) {
+  const cf_drift flow = drift_of(m);
+  CF_TRY(sample_velocity(m, t, m->at[when]));
+  cf_courant_ghosts(m->scalars.grid, flow.wraps, m->at[when]);
+  return CF_OK;
+}
+
+static cf_status make_points(cf_tracer *m, cf_registry *r) {
+  const cf_scene *scene = m->scalars.scene;
+  if (scene->points.count > 0 && !m->scalars.moves)
+    return cf_scene_fail_at(scene, "points", "points: there is no velocity that could carry them");
+  CF_TRY(cf_drifters_create(&m->points, scene, m->scalars.grid));
+  for (int when = 0; when < 3 && m->points.set != NULL && m->velocity_in_time; ++when) {
+    CF_TRY(cf_face_create(&m->at[when], &m->scalars.grid->box));
+    CF_TRY(sample_for_points(m, when, 0));
+  }
+  return cf_drifters_start(&m->points, r);
+}
+
+static cf_status move_points(cf_tracer *m, const double t, const double dt) {
+  if (m->points.set == NULL) return CF_OK;
+  for (int when = 0; when < 3 && m->velocity_in_time; ++when)
+    CF_TRY(sample_for_points(m, when, t + when * dt / 2));
+  const cf_drift flow = drift_of(m);
+  return cf_drifters_step(&m->points, &flow, t, dt);
+}
+
+static cf_status tracer_show(void *model) {
+  const cf_tracer *m = model;
+  const cf_drift flow = drift_of(m);
+  cf_drifters_show(&m->points, &flow);
+  return CF_OK;
+}
+
 /* --- making one ------------------------------------------------------------------------------------------- */
 
 static double tracer_natural_dt(const void *model, const double t) {
@@ -141,13 +198,15 @@ static cf_status make(cf_tracer *m, const cf_scene *scene, cf_registry *r) {
   CF_TRY(cf_scalars_make(&m->scalars, isnan(scene->time.dt) ? tracer_natural_dt(m, 0) : scene->time.dt, r));
   CF_TRY(register_velocity(m, r));
   for (int i = 0; i < m->scalars.count; ++i) CF_TRY(check_walls(m, &m->scalars.item[i]));
-  return CF_OK;
+  return make_points(m, r);
 }
 
 static void tracer_destroy(void *model) {
   cf_tracer *m = model;
   if (m == NULL) return;
   cf_face_destroy(&m->u, &m->scalars.grid->box);
+  for (int when = 0; when < 3; ++when) cf_face_destroy(&m->at[when], &m->scalars.grid->box);
+  cf_drifters_destroy(&m->points);
   cf_scalars_destroy(&m->scalars);
   cf_free(m);
 }
@@ -189,13 +248,16 @@ static cf_status tracer_step(void *model, const double t, const double dt, cf_st
   CF_TRY(cf_scalars_diffuse(&m->scalars, t, dt, report));
   clock = cf_stage_end(report, CF_STAGE_DIFFUSE, clock);
   CF_TRY(move(m, false, t + dt / 2, dt / 2, t + 3 * dt / 4, report));
-  cf_stage_end(report, CF_STAGE_ADVECT, clock);
+  clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
+  CF_TRY(move_points(m, t, dt));
+  cf_stage_end(report, CF_STAGE_TRANSFER, clock);
   return CF_OK;
 }
 
 /* The velocity has been read back as the last step had it: the length of the next one may hang on that. */
 static cf_status tracer_restored(void *model) {
   cf_tracer *m = model;
+  if (m->at[2].at[0] != NULL) CF_TRY(sample_for_points(m, 2, m->points.time));
   return m->scalars.moves ? cf_scalars_set_velocity(&m->scalars, m->u) : CF_OK;
 }
 
@@ -206,20 +268,35 @@ static bool tracer_describe(const void *model, const int line, char *text, const
 }
 
 static int tracer_metric_names(const void *model, cf_metric *names) {
-  return cf_scalars_metric_names(&((const cf_tracer *)model)->scalars, names);
+  const cf_tracer *m = model;
+  const int count = cf_scalars_metric_names(&m->scalars, names);
+  return count + cf_drifters_metric_names(&m->points, names + count);
 }
 
 static void tracer_metrics(const void *model, double *values) {
-  cf_scalars_metrics(&((const cf_tracer *)model)->scalars, values);
+  const cf_tracer *m = model;
+  cf_scalars_metrics(&m->scalars, values);
+  (void)cf_drifters_metrics(&m->points, values + CF_SCALAR_METRICS * m->scalars.count);
 }
 
 static double tracer_memory(const cf_scene *scene) {
-  return cf_scalars_bytes(scene, scene->dim + cf_scalars_memory(scene)); /* the velocity, and the rest */
+  const double velocities = scene->dim * (scene->points.count > 0 ? 4 : 1);
+  return cf_scalars_bytes(scene, velocities + cf_scalars_memory(scene)) + cf_drifters_memory(scene);
 }
 
-static const char *const tracer_keys[] = {"diffusion", "advection", "fields", "velocity", "sources", NULL};
+static const char *const tracer_keys[] = {"diffusion", "advection", "fields", "velocity",
+                                          "sources",   "points",    NULL};
+
+static cf_status tracer_check(const cf_scene *scene, const double dt, const cf_page *page) {
+  (void)dt;
+  cf_drifters_check(scene, page);
+  return CF_OK;
+}
+
+static cf_status tracer_resolve(cf_scene *scene) { return cf_drifters_resolve(scene); }
 
 static bool tracer_shows(const cf_scene *scene, const char *name) {
+  if (cf_drifters_shows(scene, name)) return true;
   return scene->given.velocity && strcmp(name, "velocity") == 0;
 }
 
@@ -227,14 +304,17 @@ const cf_model cf_model_tracer = {
     .name = "tracer",
     .summary = "scalars with C-F diffusion in a prescribed flow",
     .keys = tracer_keys,
+    .resolve = tracer_resolve,
     .shows = tracer_shows,
     .memory = tracer_memory,
+    .check = tracer_check,
     .create = tracer_create,
     .destroy = tracer_destroy,
     .restored = tracer_restored,
     .natural_dt = tracer_natural_dt,
     .describe = tracer_describe,
     .step = tracer_step,
+    .show = tracer_show,
     .metric_names = tracer_metric_names,
     .metrics = tracer_metrics,
 };
