@@ -42,8 +42,9 @@ static cf_status choose(const cf_showing *s, const char *frame, int64_t *from, i
       *from = *to = i;
       return CF_OK;
     }
-  return cf_fail(CF_BAD_USAGE, "--frame %lld: %s has %d frames, from %" PRId64 " to %" PRId64, number,
-                 s->folder, s->frames, s->number[0], s->number[s->frames - 1]);
+  return cf_fail(CF_BAD_USAGE,
+                 "--frame %lld: %s has no such frame; the first is %" PRId64 " and the last %" PRId64, number,
+                 s->folder, s->number[0], s->number[s->frames - 1]);
 }
 
 static cf_status picture_of(cf_showing *s, const int64_t number, cf_canvas *c) {

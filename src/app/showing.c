@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE
 #include "app/showing.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "base/real.h"
@@ -132,6 +135,8 @@ cf_status cf_showing_open(cf_showing *s, const char *folder, const cf_arguments 
   cf_path path;
   *s = (cf_showing){.folder = folder};
   CF_TRY(cf_path_make(&path, "%s/run.yaml", folder));
+  if (access(path.text, R_OK) != 0)
+    return cf_fail(CF_BAD_FILE, "%s: is no folder of a run: run.yaml: %s", folder, strerror(errno));
   cf_status status = cf_scene_read(&s->scene, path.text, a->sets, a->set);
   if (status == CF_OK) status = take_style(s, a);
   if (status == CF_OK) take_look(s, a);

@@ -2,7 +2,7 @@
  *
  * Units by udunits2; see units.h. What the library gets wrong and is put right here: it takes reciprocals for
  * convertible (so dimensions are compared by dividing), it reads "" as 1, it reads m^0.5 as something else
- * (so powers with a point are refused), its error output goes to the terminal (so it is switched off), and so does a
+ * (so powers with a point are refused), it multiplies by a number behind a unit (refused as well), its error output goes to the terminal (so it is switched off), and so does a
  * line break in a unit, on the standard output (so there may be none).
  */
 #include "base/units.h"
@@ -40,11 +40,20 @@ static bool has_broken_power(const char *text) {
   return false;
 }
 
+/* A number behind the start: for the library "% 3" is 0.03, but who writes 5 % 3 means something else. */
+static bool has_number_inside(const char *text) {
+  for (const char *blank = strpbrk(text, " \t"); blank != NULL; blank = strpbrk(blank + 1, " \t"))
+    if (blank > text && strchr("0123456789", blank[1]) != NULL && blank[1] != '\0') return true;
+  return false;
+}
+
 static bool is_blank(const char *text) { return text[strspn(text, " \t")] == '\0'; }
 
 static ut_unit *parse(const char *text) {
   char trimmed[UNIT_MAX];
-  if (strlen(text) >= UNIT_MAX || strchr(text, '\n') != NULL || has_broken_power(text)) return NULL;
+  if (strlen(text) >= UNIT_MAX || strchr(text, '\n') != NULL || has_broken_power(text) ||
+      has_number_inside(text))
+    return NULL;
   if (is_blank(text)) return ut_get_dimensionless_unit_one(database);
   const char *start = text + strspn(text, " \t");
   size_t count = strlen(start);

@@ -292,8 +292,12 @@ cf_status cf_folder_open(cf_folder *f, const char *path) {
   struct stat facts;
   CF_TRY(name_folder(f, path));
   if (stat(f->path.text, &facts) != 0)
-    return cf_fail(CF_BAD_FILE, "%s: cannot be opened: %s", f->path.text, strerror(errno));
-  if (!S_ISDIR(facts.st_mode)) return cf_fail(CF_BAD_FILE, "%s: is not a folder", f->path.text);
+    return cf_fail(CF_BAD_FILE, "%s: cannot be opened: %s; wanted is the folder of a run", f->path.text,
+                   strerror(errno));
+  if (!S_ISDIR(facts.st_mode))
+    return cf_fail(CF_BAD_FILE,
+                   "%s: is not a folder; wanted is the folder of a run (a scene is run by cattaneo run)",
+                   f->path.text);
   CF_TRY(cf_path_make(&yaml, "%s/run.yaml", f->path.text));
   if (access(yaml.text, R_OK) != 0)
     return cf_fail(CF_BAD_FILE, "%s: holds no run that could go on: run.yaml: %s", f->path.text,

@@ -97,7 +97,9 @@ cf_status cf_hdf5_open(cf_hdf5 *h, const char *path) {
   cf_status s = CF_OK;
   if (h->file < 0) {
     H5Eclear2(H5E_DEFAULT);
-    s = cf_fail(CF_BAD_FILE, "%s: is not an HDF5 file, or is damaged", path);
+    s = cf_fail(CF_BAD_FILE,
+                "%s: is neither a frame nor a checkpoint, or is damaged: the HDF5 library cannot read it",
+                path);
   }
   H5Pclose(access);
   if (s != CF_OK) leave(h);

@@ -27,7 +27,10 @@ typedef struct finding {
 static void cause_text(const cf_sim *sim, const double largest, char *text, const size_t size) {
   const double natural = sim->model->natural_dt(sim->state, sim->time);
   const bool chosen = !isnan(sim->scene->time.dt), grown = !(largest < GROWN);
-  if (grown && chosen && natural > 0 && sim->dt > DT_SUSPICIOUS * natural)
+  if (sim->step == 0)
+    snprintf(text, size,
+             "look for an initial value that divides by 0 or takes a root of a negative number there");
+  else if (grown && chosen && natural > 0 && sim->dt > DT_SUSPICIOUS * natural)
     snprintf(text, size,
              "the step is %.3g times the one that `dt: auto` takes: try time.dt of %.2g s or less",
              sim->dt / natural, natural);

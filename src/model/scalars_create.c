@@ -123,9 +123,12 @@ static cf_status make_diffuse(const cf_scalars *m, cf_scalar *s) {
   CF_TRY(cf_sources_create(&s->sources, scene, m->grid, s->field, s->flux, &acts));
   const cf_status made = cf_diffuse_create(&s->diffuse, m->grid, &s->walls, &p, &acts);
   if (made != CF_BAD_ARGUMENT) return made;
-  char why[CF_SENTENCE_MAX], key[2 * CF_NAME_MAX];
+  /* The sentence begins with the name of the parameter, which is that of its key. */
+  char why[CF_SENTENCE_MAX], key[3 * CF_NAME_MAX];
   snprintf(why, sizeof why, "%s", cf_status_sentence());
-  snprintf(key, sizeof key, "fields.%s.diffusion", s->name);
+  const int name = CF_MIN((int)strcspn(why, " "), CF_NAME_MAX);
+  snprintf(key, sizeof key, "fields.%s.diffusion.%.*s", s->name, name, why);
+  if (!cf_scene_has(scene, key)) snprintf(key, sizeof key, "diffusion.%.*s", name, why);
   return cf_scene_fail_at(scene, cf_scene_has(scene, key) ? key : "diffusion", "%s", why);
 }
 

@@ -2,7 +2,11 @@
  *
  * Making a snowfall: flakes of the atlas in the air, and the columns that they land on.
  */
+#define _GNU_SOURCE
+#include <errno.h>
 #include <math.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "base/rng.h"
@@ -172,6 +176,10 @@ static cf_status register_all(cf_snowfall *s, cf_registry *r) {
 }
 
 static cf_status read_atlas(cf_snowfall *s) {
+  if (access(s->keys->atlas, R_OK) != 0)
+    return cf_scene_fail_at(s->scene, "snowfall.atlas",
+                            "snowfall.atlas: %s: %s (cattaneo atlas makes one of grown crystals)",
+                            s->keys->atlas, strerror(errno));
   CF_TRY(cf_atlas_read(&s->atlas, s->keys->atlas));
   CF_TRY(CF_NEW(&s->shape, s->atlas->flakes.count));
   for (int i = 0; i < s->atlas->flakes.count; ++i) CF_TRY(cf_atlas_measure(s->atlas, i, &s->shape[i]));

@@ -51,14 +51,18 @@ static void faces_from_cells(const cf_box *box, const cf_real *cell, const cf_fa
 static cf_status sample_positive(const cf_diffuse *d, const cf_fn *f, const char *what,
                                  const bool zero_is_fine, const cf_cell out) {
   CF_TRY(cf_grid_sample(d->grid, f, CF_CENTRES, 0, out.at));
-  const cf_range range = cf_sweep_range(&d->grid->box, 1, out.at, d->rows);
   int where[3];
   if (!cf_sweep_finite(&d->grid->box, 1, out.at, where))
     return cf_fail(CF_BAD_ARGUMENT, "%s is not finite in cell (%d, %d, %d)", what, where[0], where[1],
                    where[2]);
-  if (range.min < 0 || (range.min == 0 && !zero_is_fine))
-    return cf_fail(CF_BAD_ARGUMENT, "%s = %g somewhere in the box: must be %s", what, range.min,
-                   zero_is_fine ? ">= 0" : "> 0");
+  const cf_box *b = &d->grid->box;
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
+    for (int i = 0; i < b->n[0]; ++i) {
+      const double value = (double)out.at[cf_box_row(b, r) + i];
+      if (value < 0 || (value == 0 && !zero_is_fine))
+        return cf_fail(CF_BAD_ARGUMENT, "%s = %g in cell (%d, %d, %d): must be %s", what, value, i,
+                       (int)(r % b->n[1]), (int)(r / b->n[1]), zero_is_fine ? ">= 0" : "> 0");
+    }
   return CF_OK;
 }
 

@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: MIT
 """Every error the program can give, from its sources, and whether somebody has seen it.
 
-    errors.py SOURCES WITNESS [--list]     WITNESS: the program linked with witness.c; --list: all sentences, to read
+    errors.py SOURCES WITNESS TESTS [--list | --said]     WITNESS: the program linked with witness.c; TESTS: the
+        folder of the tests of the floors, linked likewise; --list: all errors, to read; --said: every line of cases.txt
+        and what the program answers, to read
 
-An error is a call of cf_fail, cf_scene_fail_at or cf_config_fail with its format. All scenes of tests/golden and the
-command lines in cases.txt are given to the program; what was never said must stand in elsewhere.txt: those that only
-a caller of the library, a failing machine or a test of its own can provoke. A new error without a case fails the test.
+An error is a call of cf_fail, cf_scene_fail_at, cf_config_fail or cf_config_fail_at with its format. All scenes of tests/golden and the
+command lines in cases.txt are given to the program (a line that begins with ! is one of the shell), and the tests of
+the floors run; what was never said must stand in elsewhere.txt with its reason: what only a failing machine provokes.
+A new error without a case fails the test, and so does a line of elsewhere.txt that is no error.
 """
 
 import os
@@ -18,28 +21,26 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-CALL = re.compile(r"\b(cf_fail|cf_scene_fail_at|cf_config_fail)\s*\(")
+FORMAT_IS = {"cf_fail": 1, "cf_scene_fail_at": 2, "cf_config_fail": 2, "cf_config_fail_at": 2}  # which argument
+CALL = re.compile(rf"\b({'|'.join(FORMAT_IS)})\s*\(")
 PIECE = re.compile(r'"((?:[^"\\]|\\.)*)"|([A-Za-z_]\w*)')
 
 
-def format_at(text, start):
-    """The format of the call whose parenthesis opens at `start`: its first literal and those joined to it."""
-    depth, i, found = 0, start, []
+def format_at(text, start, wanted):
+    """The format, argument `wanted`, of the call whose parenthesis opens at `start`; its literals are joined."""
+    depth, argument, i, found = 0, 0, start, []
     while i < len(text):
         c = text[i]
-        if c == '"':
+        if c == '"' or found and (c.isalpha() or c == "_"):  # a literal, or a macro between two of them
             piece = PIECE.match(text, i)
-            found.append(piece[1])
+            if argument == wanted:
+                found.append(piece[1] if c == '"' else "\0")
             i = piece.end()
             continue
-        if found and c == "," or c == ")" and depth == 1:
+        depth += (c in "([{") - (c in ")]}")
+        argument += c == "," and depth == 1
+        if depth == 0 or argument > wanted:
             break
-        if found and (c.isalpha() or c == "_"):  # a macro between two literals
-            word = PIECE.match(text, i)
-            found.append("\0")
-            i = word.end()
-            continue
-        depth += (c == "(") - (c == ")")
         i += 1
     return "".join(found)
 
@@ -50,7 +51,7 @@ def known(sources):
     for path in sorted(sources.rglob("*.c")):
         text = path.read_text()
         for call in CALL.finditer(text):
-            written = format_at(text, call.end() - 1)
+            written = format_at(text, call.end() - 1, FORMAT_IS[call[1]])
             if written.strip("%s") and not written.startswith("const char"):
                 line = text.count("\n", 0, call.start()) + 1
                 errors.setdefault(written, []).append(f"{path.relative_to(sources)}:{line}")
@@ -62,20 +63,22 @@ def pattern(written):
     return re.compile(".*?".join(re.escape(part) for part in plain.split("\0")))
 
 
-def provoke(witness, seen):
+def provoke(witness, tests, seen, tell):
     environment = {**os.environ, "ERRORS_SEEN": seen, "GOMP_SPINCOUNT": "1000", "OMP_WAIT_POLICY": "passive"}
 
     def call(words, folder):
-        done = subprocess.run([witness, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
-                              capture_output=True, timeout=60)
-        if done.returncode < 0:
-            sys.exit(f"{words}: killed by signal {-done.returncode}")
+        done = subprocess.run(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
+                              timeout=600)
+        if tell and words[0] == witness:
+            print(f"$ cattaneo {' '.join(words[1:])}\n{done.stderr.decode()}[{done.returncode}]")
+        if done.returncode < 0 or words[0] == "sh" and done.returncode != 0:
+            sys.exit(f"{words}: {done.returncode}\n{done.stderr.decode()}")
 
     golden = HERE.parent / "golden/scene_errors"
     for scene in sorted(golden.glob("*.yaml")):
         more = scene.with_suffix(".set")
         sets = more.read_text().splitlines() if more.exists() else []
-        call(["check", scene.name, *[word for line in sets for word in ("--set", line)]], golden)
+        call([witness, "check", scene.name, *[word for line in sets for word in ("--set", line)]], golden)
     with tempfile.TemporaryDirectory(prefix="cattaneo-errors-") as folder:
         for name in ("tracer", "flow", "phase", "gel", "snowfall"):
             text = HERE.parent / f"bits/{name}.yaml"
@@ -83,22 +86,30 @@ def provoke(witness, seen):
                 (pathlib.Path(folder) / f"{name}.yaml").write_text(text.read_text())
         os.symlink(HERE.parent / "bits/flakes", pathlib.Path(folder) / "flakes")
         for line in (HERE / "cases.txt").read_text().splitlines():
-            words = shlex.split(line, comments=True)
-            if words:
-                call(words, folder)
+            if line.startswith("!"):
+                call(["sh", "-c", line[1:]], folder)
+            elif words := shlex.split(line, comments=True):
+                call([witness, *words], folder)
+    if not tell:
+        for program in sorted(tests.glob("unit_*")) + sorted(tests.glob("memory_*")):
+            if not program.name.endswith("_single"):
+                call([str(program)], tests.parent)
 
 
 def main():
-    sources, witness = pathlib.Path(sys.argv[1]), os.path.abspath(sys.argv[2])
+    sources, witness, tests = pathlib.Path(sys.argv[1]), os.path.abspath(sys.argv[2]), pathlib.Path(sys.argv[3]).resolve()
     errors = known(sources)
     if "--list" in sys.argv:
         for written, places in errors.items():
             print(f"{places[0]}: {written!r}")
         return 0
     with tempfile.NamedTemporaryFile(prefix="cattaneo-seen-") as file:
-        provoke(witness, file.name)
+        provoke(witness, tests, file.name, "--said" in sys.argv)
+        if "--said" in sys.argv:
+            return 0
         said = set(pathlib.Path(file.name).read_text(errors="replace").splitlines())
     elsewhere = {line for line in (HERE / "elsewhere.txt").read_text().splitlines() if line and line[0] != "#"}
+    stale = elsewhere - {written.replace("\0", "@") for written in errors}
     missing = []
     for written, places in errors.items():
         shape = pattern(written)
@@ -107,10 +118,12 @@ def main():
     print(f"{len(errors)} errors, {len(errors) - len(missing)} known, {len(said)} said by the program")
     for place, written in missing:
         print(f"never provoked: {place}: {written}")
-    return 1 if missing else 0
+    for line in sorted(stale):
+        print(f"elsewhere.txt: is no error: {line}")
+    return 1 if missing or stale else 0
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3:
+    if len(sys.argv) < 4:
         sys.exit(__doc__)
     sys.exit(main())

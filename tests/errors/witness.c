@@ -22,6 +22,8 @@ cf_status __real_cf_scene_fail_at(const cf_scene *scene, const char *key, const 
 cf_status __wrap_cf_scene_fail_at(const cf_scene *scene, const char *key, const char *format, ...);
 cf_status __real_cf_config_fail(const cf_config *config, cf_about about, const char *format, ...);
 cf_status __wrap_cf_config_fail(const cf_config *config, cf_about about, const char *format, ...);
+cf_status __real_cf_config_fail_at(const cf_config *config, const char *key, const char *format, ...);
+cf_status __wrap_cf_config_fail_at(const cf_config *config, const char *key, const char *format, ...);
 
 static void note(const char *format) {
   const char *path = getenv("ERRORS_SEEN");
@@ -59,4 +61,9 @@ cf_status __wrap_cf_scene_fail_at(const cf_scene *scene, const char *key, const 
 cf_status __wrap_cf_config_fail(const cf_config *config, const cf_about about, const char *format, ...) {
   SENTENCE(text, format);
   return __real_cf_config_fail(config, about, "%s", text);
+}
+
+cf_status __wrap_cf_config_fail_at(const cf_config *config, const char *key, const char *format, ...) {
+  SENTENCE(text, format);
+  return __real_cf_config_fail_at(config, key, "%s", text);
 }

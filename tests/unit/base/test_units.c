@@ -72,6 +72,15 @@ static void units_that_do_not_exist_are_refused(void **state) {
   refused("lg(re 1 mW)", NULL, "has unit lg(re 1 mW): there is no such unit");
 }
 
+static void units_with_a_number_behind_them_are_refused(void **state) {
+  (void)state;
+  cf_unit_change change;
+  assert_int_equal(cf_units_change("% 3", NULL, &change), CF_BAD_ARGUMENT);
+  assert_int_equal(cf_units_change("m 2", "m", &change), CF_BAD_ARGUMENT);
+  CLOSE(scale("m s-1", "m/s"), 1.0, 0.0);
+  CLOSE(scale("100 m", "m"), 100.0, 0.0);
+}
+
 static void units_of_any_length_do_no_harm(void **state) {
   (void)state;
   char text[5000];
@@ -134,6 +143,7 @@ int main(void) {
       cmocka_unit_test(units_of_another_dimension_are_refused),
       cmocka_unit_test(units_that_are_reciprocals_are_refused),
       cmocka_unit_test(units_that_do_not_exist_are_refused),
+      cmocka_unit_test(units_with_a_number_behind_them_are_refused),
       cmocka_unit_test(units_of_any_length_do_no_harm),
       cmocka_unit_test(units_never_reach_the_terminal),
       cmocka_unit_test(units_may_be_asked_from_several_threads),

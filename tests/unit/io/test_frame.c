@@ -196,7 +196,7 @@ static void files_that_are_no_frames_are_refused(void **state) {
   assert_says("No such file");
   assert_int_equal(cf_file_write(path.text, "no frame", 8), CF_OK);
   assert_int_equal(cf_frame_read(&f, path.text), CF_BAD_FILE);
-  assert_says("is not an HDF5 file, or is damaged");
+  assert_says("is neither a frame nor a checkpoint, or is damaged");
 }
 
 int main(void) {
