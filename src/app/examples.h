@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scenes of examples/, in the program. The list is made at build time (cmake/embed.cmake).
+ * The scenes of examples/, in the program, and the files that they name. The lists are made at build time
+ * (cmake/embed.cmake).
  */
 #ifndef CF_APP_EXAMPLES_H
 #define CF_APP_EXAMPLES_H
@@ -13,7 +14,14 @@ typedef struct cf_example {
   size_t size;
 } cf_example;
 
-/* Ends with a row without a name. */
+typedef struct cf_example_file {
+  const char *example, *path; /* the path from the scene, example/name */
+  const unsigned char *bytes;
+  size_t size;
+} cf_example_file;
+
+/* Both end with a row without a name. */
 extern const cf_example cf_examples[];
+extern const cf_example_file cf_example_files[];
 
 #endif

@@ -61,6 +61,32 @@ float cf_lens_blur(const cf_lens *l, const float distance) {
   return l->radius * fabsf(distance - l->focus) / l->focus * cf_lens_scale(l, l->parallel ? 1 : distance);
 }
 
+/* Whether all corners of the box are beyond a plane near the eye that no ray crosses: n (p - eye) < -radius. `least` is
+ * the smallest tangent, along `axis`, of the pixels. A ray starts on the lens, at n (p - eye) >= -radius, and passes the
+ * sharp plane where n (p - eye) >= radius. */
+static bool misses(const cf_lens *l, const cf_vec axis, const float least, const cf_vec corner[8]) {
+  const float shift = l->radius / l->focus;
+  if (shift > 0.9f) return false;
+  const float edge = least - shift * (1 + fabsf(least)) / (1 - shift);
+  const cf_vec n = cf_vec_unit(cf_vec_along(axis, -edge, l->forward));
+  for (int c = 0; c < 8; ++c)
+    if (cf_vec_dot(n, cf_vec_sub(corner[c], l->eye)) >= -l->radius) return false;
+  return true;
+}
+
+bool cf_lens_reaches(const cf_lens *l, const float pixels[4], const cf_vec low, const cf_vec high) {
+  const float x[2] = {(pixels[0] - 0.5f * (float)l->width) * l->pixel,
+                      (pixels[2] - 0.5f * (float)l->width) * l->pixel};
+  const float y[2] = {(0.5f * (float)l->height - pixels[3]) * l->pixel,
+                      (0.5f * (float)l->height - pixels[1]) * l->pixel};
+  const cf_vec left = cf_vec_scale(-1, l->right), down = cf_vec_scale(-1, l->up);
+  cf_vec corner[8];
+  for (int c = 0; c < 8; ++c)
+    corner[c] = (cf_vec){c & 1 ? high.x : low.x, c & 2 ? high.y : low.y, c & 4 ? high.z : low.z};
+  return l->parallel || !(misses(l, l->right, x[0], corner) || misses(l, left, -x[1], corner) ||
+                          misses(l, l->up, y[0], corner) || misses(l, down, -y[1], corner));
+}
+
 /* Steps back until every corner of the box is inside the picture, and looks at the middle of what they cover. */
 cf_camera cf_camera_around(const double low[3], const double high[3], const double turn, const double rise,
                            const double angle, const double aspect) {

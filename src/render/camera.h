@@ -51,6 +51,9 @@ float cf_lens_scale(const cf_lens *l, float distance);
 /* Radius of the circle of confusion in pixels. */
 float cf_lens_blur(const cf_lens *l, float distance);
 
+/* Whether a ray through pixels x0 <= x <= x1, y0 <= y <= y1 may meet the box; false is sure. */
+bool cf_lens_reaches(const cf_lens *l, const float pixels[4], cf_vec low, cf_vec high);
+
 /* A camera that looks at the box low..high so that all of it is in the picture. `turn` (0: from -y; 90: from +x)
  * and `rise` above the horizon in degrees; `aspect` is width over height. */
 cf_camera cf_camera_around(const double low[3], const double high[3], double turn, double rise, double angle,

@@ -144,8 +144,8 @@ static void dusk(const cf_look *look, const cf_exhibit *e, cf_studio *s) {
   s->sky = (cf_sky){{0.10f, 0.14f, 0.22f}, {0.05f, 0.07f, 0.11f}, {0.02f, 0.02f, 0.03f}};
   s->bounce = 0.6f;
   s->backdrop = (cf_backdrop){night, cf_vec_scale(0.16f, night), {0.5f, 0.55f}, 1.0f};
-  const float fade = (float)(2.4 / deep); /* the far side is nearly lost in it */
-  s->haze = (cf_haze){{fade, 0.92f * fade, 0.85f * fade}, cf_vec_scale(0.8f, night)};
+  const float fade = (float)(3.6 / deep); /* the far side is nearly lost in it */
+  s->haze = (cf_haze){{fade, 0.92f * fade, 0.85f * fade}, cf_vec_scale(0.5f, night)};
 }
 
 static cf_status take(const cf_look *look, const cf_studio *s, const cf_cards *all, cf_canvas *c) {

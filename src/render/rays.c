@@ -91,6 +91,13 @@ cf_status cf_rays_ready(cf_rays *r) {
   return why(r, "the tree was built");
 }
 
+bool cf_rays_bounds(const cf_rays *r, cf_vec *low, cf_vec *high) {
+  struct RTCBounds b;
+  rtcGetSceneBounds(r->scene, &b);
+  *low = (cf_vec){b.lower_x, b.lower_y, b.lower_z}, *high = (cf_vec){b.upper_x, b.upper_y, b.upper_z};
+  return low->x <= high->x;
+}
+
 static struct RTCRay embree_ray(const cf_ray *ray, const float near, const float far) {
   return (struct RTCRay){.org_x = ray->from.x,
                          .org_y = ray->from.y,

@@ -29,6 +29,9 @@ cf_status cf_rays_add_balls(cf_rays *r, int64_t count, const float (*at)[4], con
 
 cf_status cf_rays_ready(cf_rays *r);
 
+/* The box that all of it is in; false: there is nothing. */
+bool cf_rays_bounds(const cf_rays *r, cf_vec *low, cf_vec *high);
+
 typedef struct cf_hit {
   float distance;
   cf_vec normal;         /* across the surface, of no particular length */

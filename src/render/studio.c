@@ -120,13 +120,31 @@ static void expose_pixel(const cf_stage *stage, const cf_lens *lens, const int x
   f->light[p] = cf_vec_scale(1 / (float)s->samples, sum);
 }
 
+/* Where nothing can be met: the backdrop alone. */
+static void expose_backdrop(const cf_studio *s, const int x, const int y, cf_film *f) {
+  const size_t p = (size_t)y * (size_t)f->width + (size_t)x;
+  const float wide = (float)s->width, tall = (float)s->height;
+  f->distance[p] = INFINITY;
+  f->light[p] = cf_backdrop_at(&s->backdrop, ((float)x + 0.5f) / wide, ((float)y + 0.5f) / tall, wide / tall);
+}
+
 static void expose_all(const cf_stage *stage, const cf_lens *lens, cf_film *f) {
+  cf_vec low, high;
+  const bool some = cf_rays_bounds(stage->rays, &low, &high);
   const int across = (f->width + TILE - 1) / TILE, tiles = across * ((f->height + TILE - 1) / TILE);
   CF_PRAGMA(omp parallel for schedule(dynamic) num_threads(CF_MAX(stage->studio->threads, 1)))
   for (int t = 0; t < tiles; ++t) {
     const int x0 = t % across * TILE, y0 = t / across * TILE;
-    for (int y = y0; y < CF_MIN(y0 + TILE, f->height); ++y)
-      for (int x = x0; x < CF_MIN(x0 + TILE, f->width); ++x) expose_pixel(stage, lens, x, y, f);
+    const int x1 = CF_MIN(x0 + TILE, f->width), y1 = CF_MIN(y0 + TILE, f->height);
+    const float pixels[4] = {(float)x0 - 1, (float)y0 - 1, (float)x1 + 1,
+                             (float)y1 + 1}; /* tents reach out */
+    const bool full = stage->studio->media > 0 || (some && cf_lens_reaches(lens, pixels, low, high));
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x)
+        if (full)
+          expose_pixel(stage, lens, x, y, f);
+        else
+          expose_backdrop(stage->studio, x, y, f);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/rng.h"
 #include "render/rays.h"
 #include "render/sample.h"
 #include "render/studio.h"
@@ -433,6 +434,53 @@ static void what_cannot_be_taken_is_said(void **state) {
   wrong(&s, "corner");
 }
 
+/* Whether a line from inside of the lens meets the box: slabs. */
+static bool meets(const cf_ray *r, const cf_vec low, const cf_vec high) {
+  const float from[3] = {r->from.x, r->from.y, r->from.z}, along[3] = {r->along.x, r->along.y, r->along.z};
+  const float l[3] = {low.x, low.y, low.z}, h[3] = {high.x, high.y, high.z};
+  float near = 0, far = INFINITY;
+  for (int a = 0; a < 3; ++a) {
+    const float p = (l[a] - from[a]) / along[a], q = (h[a] - from[a]) / along[a];
+    near = fmaxf(near, fminf(p, q)), far = fminf(far, fmaxf(p, q));
+  }
+  return near <= far;
+}
+
+static float chance(uint64_t *n, const float low, const float high) {
+  return low + (high - low) * (float)cf_random(5, 6, 7, (*n)++);
+}
+
+/* Boxes, tiles and lenses by chance: where no ray should reach none does, and that is said of most that are far off. */
+static void parts_of_a_picture_that_a_box_cannot_reach_are_known(void **state) {
+  (void)state;
+  uint64_t n = 0;
+  int spared = 0, missed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const cf_camera c = {.eye = {0, -2, 0.3},
+                         .aim = {chance(&n, -1, 1), 0, chance(&n, -1, 1)},
+                         .angle = chance(&n, 10, 90),
+                         .focus = chance(&n, 0.1f, 3),
+                         .aperture = i % 3 ? chance(&n, 0, 0.1f) : 0};
+    const float x = chance(&n, 0, 90), y = chance(&n, 0, 70), pixels[4] = {x, y, x + 10, y + 10};
+    const cf_vec low = {chance(&n, -2, 2), chance(&n, -3, 2), chance(&n, -2, 2)};
+    const cf_vec high = {low.x + chance(&n, 0, 1), low.y + chance(&n, 0, 1), low.z + chance(&n, 0, 1)};
+    cf_lens l;
+    bool met = false;
+    OK(cf_lens_grind(&l, &c, 100, 80));
+    for (int k = 0; k < 200; ++k) {
+      const float at[2] = {chance(&n, 0, 1), chance(&n, 0, 1)};
+      float disc[2];
+      cf_sample_disc(at, disc);
+      const cf_ray r = cf_lens_ray(&l, chance(&n, x, x + 10), chance(&n, y, y + 10), disc);
+      met = met || meets(&r, low, high);
+    }
+    const bool reaches = cf_lens_reaches(&l, pixels, low, high);
+    assert_true(reaches || !met);
+    missed += met ? 0 : 1, spared += reaches ? 0 : 1;
+  }
+  assert_true(spared > 0.8 * missed);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_slab_lets_through_what_beer_and_lambert_say),
@@ -452,6 +500,7 @@ int main(void) {
       cmocka_unit_test(dither_keeps_the_mean),
       cmocka_unit_test(samples_are_spread_evenly),
       cmocka_unit_test(any_number_of_threads_takes_the_same_picture),
+      cmocka_unit_test(parts_of_a_picture_that_a_box_cannot_reach_are_known),
       cmocka_unit_test(what_cannot_be_taken_is_said),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
