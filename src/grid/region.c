@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "grid/sweep.h"
+#include "grid/wall.h"
 
 cf_status cf_region_create(cf_region **r, const cf_grid *g) { return cf_region_create_on(r, g, NULL); }
 
@@ -136,6 +137,20 @@ void cf_region_retire(cf_region *r) {
   if (r->tiles == NULL) return;
   cf_tiles_retire_bytes(r->tiles, r->kind, 1);
   cf_tiles_retire_cell(r->tiles, r->value);
+}
+
+void cf_region_ghosts(cf_region *r, const bool wraps[3]) {
+  const cf_box *b = &r->grid.box;
+  for (int a = 0; a < b->dim; ++a)
+    for (int side = 0; side < 2; ++side) {
+      const cf_wall_side w = cf_wall_side_of(b, a, side);
+      const ptrdiff_t across = wraps[a] ? (b->n[a] - 1) * b->stride[a] * (side == 0 ? 1 : -1) : 0;
+      for (int i_c = 0; i_c < w.n_c; ++i_c)
+        for (int i_b = 0; i_b < w.n_b; ++i_b) {
+          const ptrdiff_t cell = cf_wall_cell(b, &w, i_b, i_c);
+          r->kind[cell + w.outward] = r->kind[cell + across];
+        }
+    }
 }
 
 /* --- taking what was written -------------------------------------------------------------------------- */

@@ -45,6 +45,10 @@ void cf_region_fill(cf_region *r, cf_cell_kind kind);
 /* After the tiles have changed: cells that left are walls, and their pages are given back. */
 void cf_region_retire(cf_region *r);
 
+/* One layer of ghosts: beyond a wall of the box a cell is of the kind of the one beside it, or of the one it wraps to.
+ * For those who read kinds across faces; solvers do not. */
+void cf_region_ghosts(cf_region *r, const bool wraps[3]);
+
 static inline cf_cell_kind cf_region_kind(const cf_region *r, const ptrdiff_t p) {
   return (cf_cell_kind)r->kind[p];
 }

@@ -268,6 +268,33 @@ static cf_status be_born(cf_drifters *d, const cf_drift *flow, const double t, c
   return CF_OK;
 }
 
+/* Newton's steps along the normal: interpolation may let a point in by a part of a cell. */
+static void put_out(const cf_drifters *d, const int64_t i) {
+  const cf_grid *g = d->grid;
+  cf_real *const *at = d->set->attribute[CF_PARTICLE_POSITION].at;
+  double x[3] = {0, 0, 0}, n[3];
+  for (int a = 0; a < g->box.dim; ++a) {
+    x[a] = (double)at[a][i];
+    if (!(x[a] >= g->origin[a] && x[a] <= g->origin[a] + g->box.n[a] * g->h)) return;
+  }
+  double away = cf_obstacles_distance(d->solids, x);
+  for (int pass = 0; pass < 4 && away < 0; ++pass) {
+    cf_obstacles_normal(d->solids, x, 0.05 * g->h, n);
+    for (int a = 0; a < g->box.dim; ++a) x[a] += n[a] * (1e-3 * g->h - away);
+    away = cf_obstacles_distance(d->solids, x);
+  }
+  for (int a = 0; a < g->box.dim; ++a) {
+    const double high = g->origin[a] + g->box.n[a] * g->h;
+    at[a][i] = (cf_real)CF_MIN(high, CF_MAX(g->origin[a], x[a]));
+  }
+}
+
+static void put_out_of_solids(const cf_drifters *d) {
+  if (d->solids == NULL || d->solids->count == 0) return;
+#pragma omp parallel for schedule(static) num_threads(d->grid->threads)
+  for (int64_t i = 0; i < d->set->count; ++i) put_out(d, i);
+}
+
 static void remove_those_out(cf_drifters *d) {
   const int64_t before = d->set->count;
   cf_particles_remove(d->set, d->grid->threads);
@@ -289,6 +316,7 @@ cf_status cf_drifters_step(cf_drifters *d, const cf_drift *flow, const double t,
   if (d->set == NULL) return CF_OK;
   cf_drift_move(flow, dt, d->set, 0);
   CF_TRY(be_born(d, flow, t, dt));
+  put_out_of_solids(d);
   remove_those_out(d);
   d->time = t + dt;
   if (++d->moves % SORT_EVERY == 0) cf_drift_sort(d->grid, d->set);

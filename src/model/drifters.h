@@ -22,11 +22,13 @@
 
 #include "grid/registry.h"
 #include "model/model.h"
+#include "model/obstacles.h"
 #include "physics/drift.h"
 
 typedef struct cf_drifters {
   const cf_scene *scene;
   const cf_grid *grid;
+  const cf_obstacles *solids; /* NULL: none; a point that has come into one is put back on its surface */
   cf_particles *set;          /* NULL: the scene has none, and nothing below does anything */
   int born, source, velocity; /* attributes; source: -1 */
   /* state: */

@@ -47,7 +47,7 @@ CF_CLONES static void middle_row(const int n, const cf_real r, const cf_real *u,
 
 static cf_status find_middle(cf_flow *m, const double dt) {
   const cf_box *b = &m->grid->box;
-  const cf_real r = (cf_real)(m->last_dt > 0 ? dt / (2 * m->last_dt) : 0);
+  const cf_real r = (cf_real)(m->last_dt > 0 && !m->solids.changes ? dt / (2 * m->last_dt) : 0);
   for (int a = 0; a < b->dim; ++a)
     CF_PARALLEL_FACE_ROWS (b, m->grid->threads, a, row) {
       const ptrdiff_t p = cf_box_face_row(b, a, row);
@@ -64,7 +64,7 @@ static cf_status move_velocity(cf_flow *m, const double t, const double dt, bool
   if (!begun[m->scheme]) CF_TRY(cf_advect_begin(a, t, dt));
   begun[m->scheme] = true;
   cf_advect_velocity(a, &m->walls, m->u);
-  cf_flow_walls_hold(&m->walls, m->u);
+  cf_flow_hold(m, m->u);
   return CF_OK;
 }
 
@@ -127,7 +127,7 @@ static cf_status accelerate(cf_flow *m, const double t, const double dt, const c
 static cf_status push_half(cf_flow *m, const double t, const double dt) {
   if (m->viscosity != NULL) return accelerate(m, t, 0.5, m->push);
   CF_TRY(accelerate(m, t, dt / 2, m->u));
-  cf_flow_walls_hold(&m->walls, m->u);
+  cf_flow_hold(m, m->u);
   return CF_OK;
 }
 
@@ -143,7 +143,9 @@ static cf_status rub(cf_flow *m, const double dt, cf_step_report *report) {
 
 static cf_status project(cf_flow *m, const double dt, cf_step_report *report) {
   cf_solve_report solve;
+  cf_flow_hold(m, m->u);
   CF_TRY(cf_project_step(m->project, dt, m->pressure, m->u, &solve));
+  if (m->solids.changes) cf_project_fill(m->project, m->pressure);
   cf_step_report_add(report, CF_STAGE_PROJECT, &solve);
   return cf_flow_find_rate(m);
 }
@@ -160,8 +162,10 @@ static cf_status flow_step(void *model, const double t, const double dt, cf_step
   cf_flow *m = model;
   const bool sticky = m->viscosity != NULL;
   double clock = cf_stage_clock();
-  if (m->walls_in_time)
-    CF_TRY(cf_flow_walls_at(m, t)); /* as they were at the end of the last step, or at a resume */
+  /* As they were at the end of the last step, or at a resume. */
+  if (m->walls_in_time) CF_TRY(cf_flow_walls_at(m, t));
+  CF_TRY(cf_flow_place(m, t, dt));
+  cf_flow_hold(m, m->u);
   CF_TRY(find_middle(m, dt));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
   if (!sticky) CF_TRY(push_half(m, t, dt));
@@ -180,6 +184,7 @@ static cf_status flow_step(void *model, const double t, const double dt, cf_step
   CF_TRY(move_half(m, t + dt / 2, dt));
   CF_TRY(move_whole(m, t, dt));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
+  CF_TRY(cf_flow_place(m, t + dt, dt));
   if (!sticky) CF_TRY(push_half(m, t + dt, dt));
   clock = cf_stage_end(report, CF_STAGE_FORCE, clock);
   CF_TRY(project(m, dt, report));
@@ -195,8 +200,8 @@ static bool flow_describe(const void *model, const int line, char *text, const s
   return cf_scalars_describe(&((const cf_flow *)model)->scalars, line, text, size);
 }
 
-static const char *const flow_keys[] = {"flow",     "diffusion", "advection", "fields",
-                                        "velocity", "sources",   "points",    NULL};
+static const char *const flow_keys[] = {"flow",    "diffusion", "advection", "fields", "velocity",
+                                        "sources", "points",    "obstacles", NULL};
 
 const cf_model cf_model_flow = {
     .name = "flow",

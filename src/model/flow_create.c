@@ -102,7 +102,7 @@ static cf_status start(cf_flow *m) {
   const cf_box *b = &m->grid->box;
   for (int a = 0; a < b->dim; ++a)
     CF_TRY(cf_grid_sample(m->grid, &m->scene->velocity.axis[a].fn, a, 0, m->u.at[a]));
-  cf_flow_walls_hold(&m->walls, m->u);
+  cf_flow_hold(m, m->u);
   CF_TRY(cf_project_step(m->project, 1, m->pressure, m->u, &report));
   CF_PARALLEL_ROWS (b, m->grid->threads, r)
     for (int i = 0; i < b->n[0]; ++i) m->pressure.at[cf_box_row(b, r) + i] = 0;
@@ -143,11 +143,14 @@ static cf_status make(cf_flow *m, cf_registry *r) {
   CF_TRY(cf_flow_walls_of_scene(m));
   CF_TRY(make_fields(m));
   CF_TRY(make_equations(m));
+  CF_TRY(cf_obstacles_create(&m->solids, scene, m->grid));
+  CF_TRY(cf_flow_make_solids(m));
   CF_TRY(start(m));
   open_scalars(m);
   CF_TRY(cf_scalars_make(&m->scalars, isnan(scene->time.dt) ? cf_flow_natural_dt(m, 0) : scene->time.dt, r));
   CF_TRY(register_flow(m, r));
   CF_TRY(cf_drifters_create(&m->points, scene, m->grid));
+  m->points.solids = &m->solids;
   return cf_drifters_start(&m->points, r);
 }
 
@@ -157,6 +160,9 @@ void cf_flow_destroy(void *model) {
   const cf_box *b = &m->grid->box;
   cf_scalars_destroy(&m->scalars);
   cf_drifters_destroy(&m->points);
+  cf_obstacles_destroy(&m->solids);
+  cf_region_destroy(m->fluid);
+  cf_region_destroy(m->felt);
   cf_project_destroy(m->project);
   cf_force_destroy(m->force);
   cf_viscosity_destroy(m->viscosity);

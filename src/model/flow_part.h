@@ -6,12 +6,15 @@
  *   flow_create.c   making one
  *   flow_scene.c    its keys: completed, checked, and told by `check`
  *   flow_walls.c    walls and inlets as a scene gives them
+ *   flow_solids.c   solid bodies
  *   flow_tell.c     metrics and derived fields
  */
 #ifndef CF_MODEL_FLOW_PART_H
 #define CF_MODEL_FLOW_PART_H
 
+#include "grid/wall.h"
 #include "model/drifters.h"
+#include "model/obstacles.h"
 #include "model/scalars.h"
 #include "physics/confine.h"
 #include "physics/force.h"
@@ -42,6 +45,10 @@ typedef struct cf_flow {
   double rate;    /* of u, for the length of the next step */
 
   cf_drifters points;
+
+  cf_obstacles solids;
+  cf_region *fluid,
+      *felt; /* cells that are no solid; and what friction meets in those that are. NULL: no solids */
 } cf_flow;
 
 cf_status cf_flow_create(void **model, const cf_scene *scene, cf_registry *registry);
@@ -51,6 +58,13 @@ double cf_flow_natural_dt(const void *model, double t);
 
 /* The rate at which u empties cells, as it is now. CF_NOT_FINITE. */
 cf_status cf_flow_find_rate(cf_flow *m);
+
+/* Regions for the equations; the solids at another time. CF_NO_MEMORY. */
+cf_status cf_flow_make_solids(cf_flow *m);
+cf_status cf_flow_place(cf_flow *m, double t, double dt);
+
+/* The known velocities on faces of closed walls and of solids. */
+void cf_flow_hold(const cf_flow *m, cf_face u);
 
 /* What carries points: the velocities of the step. */
 cf_drift cf_flow_drift(const cf_flow *m);

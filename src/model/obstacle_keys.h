@@ -72,8 +72,11 @@ enum { CF_OBSTACLE_STICKY, CF_OBSTACLE_SLIP, CF_OBSTACLE_SEPARATE };
   P(value, function, CF_NONE, "", "", "Held: what scalars are on the surface, an expression in x, y, z, t")  \
   R(map, fields, cf_scene_obstacle_field, "Scalars for which kind or value differ, by name")                 \
   P(contact, word, "separate", "", CF_WORDS(CF_OBSTACLE_CONTACT_WORDS),                                      \
-    "What bodies of model gel do there. sticky: held; slip: along the surface only; separate: may leave it") \
-  P(friction, number, "0", "", "[0, inf)", "Coulomb's coefficient for them, with slip and separate")
+    "What bodies of model gel do there. sticky: held; slip: along the surface only; separate: may leave "    \
+    "it. "                                                                                                   \
+    "A viscous fluid is held where it is sticky, and slips elsewhere")                                       \
+  P(friction, number, "0", "", "[0, inf)",                                                                   \
+    "Coulomb's coefficient for bodies of model gel, with slip and separate")
 
 typedef struct cf_scene_obstacle_stop {
   CF_PARAM_MEMBERS(CF_OBSTACLE_STOP_TABLE)

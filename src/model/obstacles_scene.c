@@ -121,7 +121,9 @@ static cf_status check_model(const checked *c) {
   const cf_scene_obstacle *o = c->o;
   const bool gel = c->scene->model == CF_SCENE_MODEL_GEL;
   const bool scalars = cf_model_reads(cf_model_of(c->scene->model), "fields");
-  if (!gel && o->contact != CF_OBSTACLE_SEPARATE) return fail_at(c, "contact", "goes with model gel");
+  const bool touches = gel || c->scene->model == CF_SCENE_MODEL_FLOW;
+  if (!touches && o->contact != CF_OBSTACLE_SEPARATE)
+    return fail_at(c, "contact", "goes with models gel and flow");
   if (!gel && o->friction > 0) return fail_at(c, "friction", "goes with model gel");
   if (!scalars && o->kind == CF_OBSTACLE_HELD)
     return fail_at(c, "kind", "must be wall: this model has no scalars to hold");

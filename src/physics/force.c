@@ -10,12 +10,13 @@
 struct cf_force {
   const cf_grid *grid;
   double gravity[3];
-  cf_halo outside;  /* of phi: copied at walls, wrapped */
-  bool balanced[3]; /* the common part of layers across the axis is taken off */
-  bool through[3];  /* but for its mean: fluid can pass through both ends */
-  double *rows;     /* one a row */
-  double *layer;    /* the mean of each layer of cells, with a ghost at either end: element 0 */
-  cf_real *row;     /* the same on the faces of a row along x */
+  const cf_region *region; /* of the fluid; NULL: all */
+  cf_halo outside;         /* of phi: copied at walls, wrapped */
+  bool balanced[3];        /* the common part of layers across the axis is taken off */
+  bool through[3];         /* but for its mean: fluid can pass through both ends */
+  double *rows;            /* one a row */
+  double *layer;           /* the mean of each layer of cells, with a ghost at either end: element 0 */
+  cf_real *row;            /* the same on the faces of a row along x */
 };
 
 static bool has_open(const cf_flow_walls *w, const int axis) {
@@ -61,6 +62,8 @@ void cf_force_destroy(cf_force *f) {
   cf_free(f);
 }
 
+void cf_force_set_region(cf_force *f, const cf_region *region) { f->region = region; }
+
 /* --- the layers ------------------------------------------------------------------------------------------- */
 
 /* Layers across x: every layer has one cell of each row, and rows are added in their order. */
@@ -79,19 +82,49 @@ static void sum_rows(const cf_force *f, const int axis, const cf_cell phi) {
     f->layer[1 + (axis == 1 ? r % b->n[1] : r / b->n[1])] += f->rows[r];
 }
 
+/* Beside solids a layer has as many cells as are fluid; one without any has the mean of the last before it. */
+static void mean_of_fluid(const cf_force *f, const int axis, const cf_cell phi) {
+  const cf_box *b = &f->grid->box;
+  int at[3];
+  for (int l = 0; l < b->n[axis]; ++l) {
+    const int o1 = axis == 0 ? 1 : 0, o2 = axis == 2 ? 1 : 2;
+    double sum = 0;
+    ptrdiff_t cells = 0;
+    at[axis] = l;
+    for (at[o2] = 0; at[o2] < b->n[o2]; ++at[o2])
+      for (at[o1] = 0; at[o1] < b->n[o1]; ++at[o1]) {
+        const ptrdiff_t p = cf_box_at(b, at[0], at[1], at[2]);
+        if (f->region->kind[p] != CF_CELL_INSIDE) continue;
+        sum += (double)phi.at[p];
+        ++cells;
+      }
+    f->layer[1 + l] = cells > 0 ? sum / (double)cells : f->layer[l];
+  }
+}
+
+static void find_means(const cf_force *f, const int axis, const cf_cell phi) {
+  const cf_box *b = &f->grid->box;
+  const double cells = (double)cf_box_cells(b) / b->n[axis];
+  if (f->region != NULL) {
+    mean_of_fluid(f, axis, phi);
+    return;
+  }
+  if (axis == 0)
+    sum_columns(f, phi);
+  else
+    sum_rows(f, axis, phi);
+  for (int i = 1; i <= b->n[axis]; ++i) f->layer[i] /= cells;
+}
+
 /* What is taken off each layer of cells, ghosts included. */
 static void find_layers(const cf_force *f, const int axis, const cf_cell phi) {
   const cf_box *b = &f->grid->box;
   const int n = b->n[axis];
   for (int i = 0; i < n + 2; ++i) f->layer[i] = 0;
   if (!f->balanced[axis]) return;
-  if (axis == 0)
-    sum_columns(f, phi);
-  else
-    sum_rows(f, axis, phi);
-  const double cells = (double)cf_box_cells(b) / n;
+  find_means(f, axis, phi);
   double mean = 0;
-  for (int i = 1; i <= n; ++i) f->layer[i] /= cells, mean += f->layer[i] / n;
+  for (int i = 1; i <= n; ++i) mean += f->layer[i] / n;
   const bool wraps = f->outside.rule[axis][0] == CF_HALO_WRAP;
   f->layer[0] = f->layer[wraps ? n : 1];
   f->layer[n + 1] = f->layer[wraps ? 1 : n];

@@ -17,12 +17,16 @@
 
 #include "grid/field.h"
 #include "grid/flow_walls.h"
+#include "grid/region.h"
 
 typedef struct cf_force cf_force;
 
 /* gravity: g, m/s^2. `walls` must outlive it. CF_NO_MEMORY. */
 cf_status cf_force_create(cf_force **f, const cf_flow_walls *walls, const double gravity[3]);
 void cf_force_destroy(cf_force *f); /* NULL is fine */
+
+/* Only cells inside it are fluid (NULL: all): others do not count in the layers. It must outlive its use. */
+void cf_force_set_region(cf_force *f, const cf_region *region);
 
 /* u += dt a of one scalar. phi's ghosts are written. */
 void cf_force_lift(const cf_force *f, double dt, double lift, cf_cell phi, cf_face u);

@@ -19,6 +19,7 @@ struct cf_project {
   const cf_flow_walls *walls;
   cf_solve_options solver;
   cf_wall_values outside; /* of the pressure: 0 on open walls */
+  cf_region *region;      /* of the fluid; NULL: everywhere */
   cf_helmholtz *A;
   cf_cell change, b;
   double *rows; /* 2 a row */
@@ -62,6 +63,40 @@ void cf_project_destroy(cf_project *p) {
   cf_free(p);
 }
 
+/* --- solids ----------------------------------------------------------------------------------------------- */
+
+cf_status cf_project_set_region(cf_project *p, cf_region *region) {
+  bool wraps[3] = {false, false, false};
+  for (int a = 0; a < p->grid->box.dim; ++a) wraps[a] = p->walls->kind[a][0] == CF_FLOW_PERIODIC;
+  p->region = region;
+  if (region != NULL) cf_region_ghosts(region, wraps);
+  return cf_helmholtz_set(p->A, &(cf_coefficients){.alpha = 0, .beta = 1, .region = region});
+}
+
+static void fill_cell(const cf_project *p, const cf_real *from, const ptrdiff_t at, cf_real *to) {
+  const cf_box *b = &p->grid->box;
+  const unsigned char *kind = p->region->kind;
+  cf_real sum = 0;
+  int neighbours = 0;
+  for (int a = 0; a < b->dim; ++a)
+    for (int side = -1; side <= 1; side += 2) {
+      const ptrdiff_t next = at + side * b->stride[a];
+      if (kind[next] != CF_CELL_INSIDE) continue;
+      sum += from[next];
+      ++neighbours;
+    }
+  if (neighbours > 0) to[at] = sum / (cf_real)neighbours;
+}
+
+void cf_project_fill(const cf_project *p, const cf_cell pressure) {
+  const cf_box *b = &p->grid->box;
+  if (p->region == NULL) return;
+  cf_wall_ghosts(&p->outside, pressure);
+  CF_PARALLEL_ROWS (b, p->grid->threads, r)
+    for (ptrdiff_t at = cf_box_row(b, r), end = at + b->n[0]; at < end; ++at)
+      if (p->region->kind[at] != CF_CELL_INSIDE) fill_cell(p, pressure.at, at, pressure.at);
+}
+
 /* --- sweeps ----------------------------------------------------------------------------------------------- */
 
 /* u -= w (p - p_below). */
@@ -71,6 +106,16 @@ CF_CLONES static void push_row(const int n, const cf_real w, const ptrdiff_t bel
   for (int i = 0; i < n; ++i) u[i] -= w * (p[i] - p[i - below]);
 }
 
+/* The same on faces between two cells of the fluid. */
+CF_CLONES static void push_open_row(const int n, const cf_real w, const ptrdiff_t below, const cf_real *p,
+                                    const unsigned char *kind, cf_real *u) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    const cf_real open = kind[i] == CF_CELL_INSIDE && kind[i - below] == CF_CELL_INSIDE ? w : 0;
+    u[i] -= open * (p[i] - p[i - below]);
+  }
+}
+
 void cf_project_push(const cf_project *p, const double dt, const cf_cell pressure, const cf_face u) {
   const cf_box *b = &p->grid->box;
   const cf_real w = (cf_real)(dt / p->grid->h);
@@ -78,12 +123,17 @@ void cf_project_push(const cf_project *p, const double dt, const cf_cell pressur
   for (int a = 0; a < b->dim; ++a)
     CF_PARALLEL_FACE_ROWS (b, p->grid->threads, a, r) {
       const ptrdiff_t q = cf_box_face_row(b, a, r);
-      push_row(cf_box_extent(b, 0, a), w, b->stride[a], pressure.at + q, u.at[a] + q);
+      const int n = cf_box_extent(b, 0, a);
+      if (p->region == NULL)
+        push_row(n, w, b->stride[a], pressure.at + q, u.at[a] + q);
+      else
+        push_open_row(n, w, b->stride[a], pressure.at + q, p->region->kind + q, u.at[a] + q);
     }
 }
 
 typedef struct divergence {
-  const cf_real *u[3], *p; /* p: the pressure that has acted already */
+  const cf_real *u[3], *p;   /* p: the pressure that has acted already */
+  const unsigned char *kind; /* NULL: fluid everywhere */
   cf_real *b;
   ptrdiff_t stride[3];
   cf_real w, p_w; /* 1/(h dt), 1/h^2 */
@@ -118,6 +168,8 @@ CF_KERNEL void divergence_row(const int dim, const int n, const divergence *d, d
       d->b[x] = -out * d->w;
       whole[i] = d->b[x] - bend * d->p_w;
     }
+    for (int i = 0; d->kind != NULL && i < m; ++i)
+      if (d->kind[from + i] != CF_CELL_INSIDE) d->b[from + i] = whole[i] = 0;
     sums[0] += sum_of_squares(d->b + from, m);
     sums[1] += sum_of_squares(whole, m);
   }
@@ -131,6 +183,7 @@ static divergence divergence_at(const cf_project *p, const cf_face u, const cf_c
   divergence d = {
       .p = pressure.at + q, .b = p->b.at + q, .w = (cf_real)(1 / (h * dt)), .p_w = (cf_real)(1 / (h * h))};
   for (int a = 0; a < b->dim; ++a) d.u[a] = u.at[a] + q, d.stride[a] = b->stride[a];
+  d.kind = p->region != NULL ? p->region->kind + q : NULL;
   return d;
 }
 
@@ -173,7 +226,7 @@ cf_status cf_project_step(cf_project *p, const double dt, const cf_cell pressure
   CF_TRY(cf_helmholtz_solve(p->A, p->b, &o, p->change, report));
   report->residual /= CF_MAX(1, whole);
   cf_project_push(p, dt, p->change, u);
-  cf_flow_walls_hold(p->walls, u);
+  if (p->region == NULL) cf_flow_walls_hold(p->walls, u);
   CF_PARALLEL_ROWS (b, p->grid->threads, r) {
     const ptrdiff_t q = cf_box_row(b, r);
     add_row(b->n[0], p->change.at + q, pressure.at + q);
@@ -188,6 +241,7 @@ double cf_project_divergence(const cf_project *p, const cf_face u) {
     double most = 0;
     for (int i = 0; i < b->n[0]; ++i) {
       double out = 0;
+      if (p->region != NULL && p->region->kind[q + i] != CF_CELL_INSIDE) continue;
       for (int a = 0; a < b->dim; ++a) out += (double)(u.at[a][q + i + b->stride[a]] - u.at[a][q + i]);
       most = CF_MAX(most, fabs(out));
     }

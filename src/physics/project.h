@@ -16,6 +16,7 @@
 
 #include "grid/field.h"
 #include "grid/flow_walls.h"
+#include "grid/region.h"
 #include "solve/helmholtz.h"
 
 typedef struct cf_project cf_project;
@@ -25,14 +26,23 @@ cf_status cf_project_create(cf_project **p, const cf_flow_walls *walls, const cf
                             int levels);
 void cf_project_destroy(cf_project *p); /* NULL is fine */
 
-/* u += -dt grad p on all faces but those of closed walls. p's ghosts are written. */
+/* From now on the fluid is in the cells inside this region (NULL: everywhere); others are solid and walls in it. Their
+ * faces keep the velocity they have, which must be that of the solid. The region must outlive its use; again whenever
+ * it has changed. CF_NO_MEMORY. */
+cf_status cf_project_set_region(cf_project *p, cf_region *region);
+
+/* Gives solid cells beside the fluid the mean pressure of their neighbours in it: where a solid moves on, the pressure
+ * of what it leaves is not far off. */
+void cf_project_fill(const cf_project *p, cf_cell pressure);
+
+/* u += -dt grad p on all faces but those of closed walls and solids. p's ghosts are written. */
 void cf_project_push(const cf_project *p, double dt, cf_cell pressure, cf_face u);
 
 /* Makes u free of divergence and adds the pressure that did it. Normal velocities on closed walls stay as they are;
  * where no wall is open they must let out what they let in. report->residual is relative to the whole pressure. */
 cf_status cf_project_step(cf_project *p, double dt, cf_cell pressure, cf_face u, cf_solve_report *report);
 
-/* The largest |div u|, 1/s. */
+/* The largest |div u| in the fluid, 1/s. */
 double cf_project_divergence(const cf_project *p, cf_face u);
 
 #endif

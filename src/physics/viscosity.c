@@ -3,6 +3,9 @@
  * The volumes around the faces of an axis are a box of their own, one longer on that axis where it does not wrap, in the
  * same memory: so a component of the velocity is a cell field to the solver. Its first and last layer on closed walls
  * are known; there alpha is so large that the change is nothing.
+ *
+ * The same holds for volumes around the faces of solids. Between two solid cells a volume is no fluid: beside it the
+ * fluid slips, or has the solid's velocity half a cell away.
  */
 #include "physics/viscosity.h"
 
@@ -18,7 +21,8 @@
 typedef struct component {
   cf_grid grid;
   cf_helmholtz *A;
-  cf_cell alpha; /* where a layer is held; else NULL */
+  cf_cell alpha;      /* where a layer or the face of a solid is held; else NULL */
+  cf_region *volumes; /* which are fluid; NULL: all */
 } component;
 
 struct cf_viscosity {
@@ -27,6 +31,7 @@ struct cf_viscosity {
   cf_solve_options solver;
   component of[3];
   cf_cell change, b;
+  const cf_region *region; /* of cells; NULL: all fluid */
 };
 
 /* --- making ----------------------------------------------------------------------------------------------- */
@@ -46,15 +51,47 @@ static cf_walls walls_of(const cf_flow_walls *w, const int c) {
   return walls;
 }
 
-/* 1 in cells, HOLD on the layers of closed walls. */
-static void fill_alpha(const cf_flow_walls *w, const int c, const component *k) {
+/* What the volume around the low face of cell p along c is: `above` and `below` are the kinds of the two cells. */
+static cf_cell_kind kind_of(const int above, const int below) {
+  if (above == CF_CELL_INSIDE || below == CF_CELL_INSIDE) return CF_CELL_INSIDE;
+  return above == CF_CELL_HELD || below == CF_CELL_HELD ? CF_CELL_HELD : CF_CELL_WALL;
+}
+
+typedef struct volume {
+  cf_cell_kind kind;
+  bool held; /* its velocity is known */
+} volume;
+
+/* Beyond walls of the box a cell is what the one beside the wall is. */
+static volume volume_at(const cf_viscosity *v, const int c, const int at[3]) {
+  const cf_flow_walls *w = v->walls;
+  const cf_box *b = &w->grid->box;
+  const int n = b->n[c], last = cf_flow_count(w, c, c) - 1;
+  volume f = {CF_CELL_INSIDE, (at[c] == 0 && is_held(w, c, 0)) || (at[c] == last && is_held(w, c, 1))};
+  if (v->region == NULL) return f;
+  const bool wraps = w->kind[c][0] == CF_FLOW_PERIODIC;
+  int low[3] = {at[0], at[1], at[2]}, high[3] = {at[0], at[1], at[2]};
+  low[c] = at[c] > 0 ? at[c] - 1 : wraps ? n - 1 : 0;
+  high[c] = at[c] < n ? at[c] : n - 1;
+  const int below = v->region->kind[cf_box_at(b, low[0], low[1], low[2])];
+  const int above = v->region->kind[cf_box_at(b, high[0], high[1], high[2])];
+  f.kind = kind_of(above, below);
+  f.held = f.held || above != CF_CELL_INSIDE || below != CF_CELL_INSIDE;
+  return f;
+}
+
+/* 1 in cells, HOLD where the velocity is known. */
+static void fill_alpha(const cf_viscosity *v, const int c) {
+  const component *k = &v->of[c];
   const int *n = k->grid.box.n;
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y)
       for (int x = 0; x < n[0]; ++x) {
         const int at[3] = {x, y, z};
-        const bool held = (at[c] == 0 && is_held(w, c, 0)) || (at[c] == n[c] - 1 && is_held(w, c, 1));
-        k->alpha.at[cf_box_at(&k->grid.box, x, y, z)] = (cf_real)(held ? HOLD : 1);
+        const ptrdiff_t p = cf_box_at(&k->grid.box, x, y, z);
+        const volume f = volume_at(v, c, at);
+        k->alpha.at[p] = (cf_real)(f.held ? HOLD : 1);
+        if (k->volumes != NULL) cf_region_kinds(k->volumes)[p] = (unsigned char)f.kind;
       }
 }
 
@@ -68,7 +105,7 @@ static cf_status make_component(cf_viscosity *v, const int c, const int levels) 
   CF_TRY(cf_helmholtz_create(&k->A, &k->grid, &walls, levels));
   if (!is_held(w, c, 0) && !is_held(w, c, 1)) return CF_OK;
   CF_TRY(cf_cell_create(&k->alpha, &w->grid->box));
-  fill_alpha(w, c, k);
+  fill_alpha(v, c);
   return CF_OK;
 }
 
@@ -102,10 +139,29 @@ void cf_viscosity_destroy(cf_viscosity *v) {
   for (int c = 0; c < 3; ++c) {
     cf_helmholtz_destroy(v->of[c].A);
     cf_cell_destroy(&v->of[c].alpha, b);
+    cf_region_destroy(v->of[c].volumes);
   }
   cf_cell_destroy(&v->change, b);
   cf_cell_destroy(&v->b, b);
   cf_free(v);
+}
+
+static cf_status set_component(cf_viscosity *v, const int c) {
+  component *k = &v->of[c];
+  bool wraps[3] = {false, false, false};
+  if (k->alpha.at == NULL) CF_TRY(cf_cell_create(&k->alpha, &v->walls->grid->box));
+  if (k->volumes == NULL) CF_TRY(cf_region_create(&k->volumes, &k->grid));
+  fill_alpha(v, c);
+  for (int a = 0; a < v->walls->grid->box.dim; ++a) wraps[a] = v->walls->kind[a][0] == CF_FLOW_PERIODIC;
+  cf_region_ghosts(k->volumes, wraps);
+  return cf_region_update(k->volumes);
+}
+
+cf_status cf_viscosity_set_region(cf_viscosity *v, const cf_region *region) {
+  v->region = region;
+  v->delta = 0; /* the operators are set anew */
+  for (int c = 0; c < v->walls->grid->box.dim && region != NULL; ++c) CF_TRY(set_component(v, c));
+  return CF_OK;
 }
 
 /* --- a stage ---------------------------------------------------------------------------------------------- */
@@ -133,6 +189,30 @@ CF_CLONED(right_side_row, const right_side *, const ptrdiff_t)
 CF_CLONES static void add_row(const int n, const cf_real w, const cf_real *from, cf_real *to) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) to[i] += w * from[i];
+}
+
+/* What a neighbour across a face adds to the sum above: nothing where the fluid slips along it, and twice as much where
+ * it sticks to it, half as far away. */
+static cf_real across(const right_side *s, const unsigned char *kind, const ptrdiff_t p,
+                      const ptrdiff_t next) {
+  if (kind[next] == CF_CELL_WALL) return 0;
+  return (kind[next] == CF_CELL_HELD ? 2 : 1) * (s->u[next] - s->u[p]);
+}
+
+/* The same beside solids, whose own velocities do not change. */
+static void right_side_of_solids(const component *k, const right_side *s, const ptrdiff_t at) {
+  const cf_box *b = &k->grid.box;
+  const unsigned char *kind = k->volumes->kind;
+  for (ptrdiff_t p = at; p < at + b->n[0]; ++p) {
+    cf_real sum = 0;
+    bool beside = kind[p] != CF_CELL_INSIDE || k->alpha.at[p] > 1;
+    for (int a = 0; a < b->dim && !beside; ++a)
+      beside = kind[p - b->stride[a]] != CF_CELL_INSIDE || kind[p + b->stride[a]] != CF_CELL_INSIDE;
+    if (!beside) continue;
+    for (int a = 0; a < b->dim; ++a)
+      sum += across(s, kind, p, p + b->stride[a]) + across(s, kind, p, p - b->stride[a]);
+    s->b[p] = kind[p] != CF_CELL_INSIDE || k->alpha.at[p] > 1 ? 0 : s->bend * sum + s->push * s->a[p];
+  }
 }
 
 /* Nothing changes on the layers of closed walls. */
@@ -165,7 +245,10 @@ static cf_status stage(cf_viscosity *v, const int c, const double weight, const 
       .u = u, .a = a, .b = v->b.at, .bend = (cf_real)(v->delta * v->nu / (h * h)), .push = (cf_real)v->delta};
   for (int axis = 0; axis < 3; ++axis) s.stride[axis] = b->stride[axis];
   cf_flow_walls_ghosts(v->walls, c, u);
-  CF_PARALLEL_ROWS (b, k->grid.threads, r) right_side_row_by_dim(b->dim, b->n[0], &s, cf_box_row(b, r));
+  CF_PARALLEL_ROWS (b, k->grid.threads, r) {
+    right_side_row_by_dim(b->dim, b->n[0], &s, cf_box_row(b, r));
+    if (v->region != NULL) right_side_of_solids(k, &s, cf_box_row(b, r));
+  }
   clear_held(v, c);
   CF_PARALLEL_ROWS (b, k->grid.threads, r)
     for (int i = 0; i < b->n[0]; ++i) v->change.at[cf_box_row(b, r) + i] = 0;
@@ -184,8 +267,10 @@ static cf_status set_stage(cf_viscosity *v, const double delta) {
   v->delta = delta;
   for (int c = 0; c < v->walls->grid->box.dim; ++c) {
     const component *k = &v->of[c];
-    const cf_coefficients of = {
-        .alpha = 1, .beta = delta * v->nu, .alpha_at = k->alpha.at != NULL ? &k->alpha : NULL};
+    const cf_coefficients of = {.alpha = 1,
+                                .beta = delta * v->nu,
+                                .alpha_at = k->alpha.at != NULL ? &k->alpha : NULL,
+                                .region = v->region != NULL ? k->volumes : NULL};
     CF_TRY(cf_helmholtz_set(k->A, &of));
   }
   return CF_OK;
@@ -195,11 +280,11 @@ cf_status cf_viscosity_step(cf_viscosity *v, const double dt, const cf_face a, c
                             cf_solve_report *report) {
   *report = (cf_solve_report){.converged = true};
   CF_TRY(set_stage(v, STAGE * dt));
-  cf_flow_walls_hold(v->walls, u);
+  if (v->region == NULL) cf_flow_walls_hold(v->walls, u);
   for (int c = 0; c < v->walls->grid->box.dim; ++c) {
     CF_TRY(stage(v, c, 1 + sqrt(2.0), a.at[c], u.at[c], report));
     CF_TRY(stage(v, c, 1, a.at[c], u.at[c], report));
   }
-  cf_flow_walls_hold(v->walls, u);
+  if (v->region == NULL) cf_flow_walls_hold(v->walls, u);
   return CF_OK;
 }

@@ -16,6 +16,7 @@
 
 #include "grid/field.h"
 #include "grid/flow_walls.h"
+#include "grid/region.h"
 #include "solve/helmholtz.h"
 
 typedef struct cf_viscosity cf_viscosity;
@@ -25,7 +26,13 @@ cf_status cf_viscosity_create(cf_viscosity **v, const cf_flow_walls *walls, doub
                               const cf_solve_options *o, int levels);
 void cf_viscosity_destroy(cf_viscosity *v); /* NULL is fine */
 
-/* u over dt with the acceleration a, m/s^2. u's ghosts are written. report sums over the solves. */
+/* From now on only cells inside the region are fluid (NULL: all); others are solid: held, where the fluid sticks to them,
+ * or wall, where it slips. Their faces have the velocity of the solid. The region must outlive its use; again whenever
+ * it has changed. CF_NO_MEMORY. */
+cf_status cf_viscosity_set_region(cf_viscosity *v, const cf_region *region);
+
+/* u over dt with the acceleration a, m/s^2. u's ghosts are written. With a region, known velocities (of walls and solids)
+ * must stand in u and do so afterwards. report sums over the solves. */
 cf_status cf_viscosity_step(cf_viscosity *v, double dt, cf_face a, cf_face u, cf_solve_report *report);
 
 #endif
