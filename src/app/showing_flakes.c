@@ -52,8 +52,24 @@ static cf_status read_picture(const cf_atlas *atlas, const char *name, const cf_
                  *height, flake->pixels.value[0], flake->pixels.value[1]);
 }
 
+static float tilt_of(const uint8_t *normal) {
+  const float x = (float)normal[0] / 127.5f - 1, y = (float)normal[1] / 127.5f - 1;
+  return x * x + y * y < 1e-4f ? 0 : sqrtf(x * x + y * y); /* half a grey level is level */
+}
+
+/* The root mean square over what the ice covers. */
+static float usual_tilt(const uint8_t *rgba, const uint8_t *normal, const size_t texels) {
+  double sum = 0, all = 1e-9;
+  for (size_t n = 0; n < texels; ++n) {
+    const double cover = rgba[4 * n + 3] / 255.0, tilt = (double)tilt_of(normal + 4 * n);
+    sum += cover * tilt * tilt, all += cover;
+  }
+  return fmaxf((float)sqrt(sum / all), 0.01f);
+}
+
 /* A texture is square: a picture that is not gets empty margins. Its colour is how much light the ice scatters: rims
- * and ridges, where the normal tilts, more than level faces. */
+ * and ridges, where the normal tilts more than it does elsewhere on this flake, send back more, and let less by, than
+ * level faces, which are nearly glass. */
 static cf_status make_texture(const uint8_t *rgba, const uint8_t *normal, const int width, const int height,
                               cf_flake_picture *out) {
   const int side = CF_MAX(width, height), off[2] = {(side - width) / 2, (side - height) / 2};
@@ -62,16 +78,17 @@ static cf_status make_texture(const uint8_t *rgba, const uint8_t *normal, const 
   CF_TRY(CF_NEW(&values, 4 * texels));
   float *cover = values, *bright = values + texels;
   float(*slope)[2] = (float(*)[2])(values + 2 * texels);
+  const float usual = usual_tilt(rgba, normal, (size_t)width * (size_t)height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const size_t from = 4 * ((size_t)y * (size_t)width + (size_t)x);
       const size_t to = (size_t)(y + off[1]) * (size_t)side + (size_t)(x + off[0]);
       const float n[3] = {(float)normal[from] / 127.5f - 1, (float)normal[from + 1] / 127.5f - 1,
                           (float)normal[from + 2] / 127.5f - 1};
-      const float up = fmaxf(n[2], 0.1f), tilt = sqrtf(n[0] * n[0] + n[1] * n[1]);
+      const float up = fmaxf(n[2], 0.1f), relief = fminf(tilt_of(normal + from) / (1.5f * usual), 1);
       const float grey = ((float)rgba[from] + (float)rgba[from + 1] + (float)rgba[from + 2]) / 765;
-      cover[to] = (float)rgba[from + 3] / 255;
-      bright[to] = grey * (0.45f + 0.55f * fminf(2 * tilt, 1));
+      cover[to] = (0.5f + 0.5f * relief) * (float)rgba[from + 3] / 255;
+      bright[to] = grey * (0.55f + 0.45f * relief);
       slope[to][0] = -n[0] / up, slope[to][1] = -n[1] / up;
     }
   const cf_status s = cf_flake_picture_create(out, side, cover, bright, (const float(*)[2])slope);
