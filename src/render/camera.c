@@ -61,17 +61,25 @@ float cf_lens_blur(const cf_lens *l, const float distance) {
   return l->radius * fabsf(distance - l->focus) / l->focus * cf_lens_scale(l, l->parallel ? 1 : distance);
 }
 
-/* Whether all corners of the box are beyond a plane near the eye that no ray crosses: n (p - eye) < -radius. `least` is
- * the smallest tangent, along `axis`, of the pixels. A ray starts on the lens, at n (p - eye) >= -radius, and passes the
- * sharp plane where n (p - eye) >= radius. */
+/* Whether all corners of the box are beyond a plane near the eye that no ray crosses, n (p - eye) < -radius with
+ * n ~ axis - t forward. `least` is the smallest tangent, along `axis`, of the pixels. A ray starts on the lens, where
+ * n (p - eye) >= -radius, and passes the sharp plane where n (p - eye) >= radius if t is small enough. Tried are the steepest
+ * plane, and those along the sides of the box: ground reaches behind the camera. */
 static bool misses(const cf_lens *l, const cf_vec axis, const float least, const cf_vec corner[8]) {
+  const cf_vec side[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const float shift = l->radius / l->focus;
   if (shift > 0.9f) return false;
-  const float edge = least - shift * (1 + fabsf(least)) / (1 - shift);
-  const cf_vec n = cf_vec_unit(cf_vec_along(axis, -edge, l->forward));
-  for (int c = 0; c < 8; ++c)
-    if (cf_vec_dot(n, cf_vec_sub(corner[c], l->eye)) >= -l->radius) return false;
-  return true;
+  const float steepest = least - shift * (1 + fabsf(least)) / (1 - shift);
+  for (int k = -1; k < 3; ++k) {
+    float t = steepest;
+    if (k >= 0) t = fminf(t, -cf_vec_dot(side[k], l->forward) / cf_vec_dot(side[k], axis));
+    if (!isfinite(t)) continue;
+    const cf_vec n = cf_vec_unit(cf_vec_along(axis, -t, l->forward));
+    bool beyond = true;
+    for (int c = 0; c < 8 && beyond; ++c) beyond = cf_vec_dot(n, cf_vec_sub(corner[c], l->eye)) < -l->radius;
+    if (beyond) return true;
+  }
+  return false;
 }
 
 bool cf_lens_reaches(const cf_lens *l, const float pixels[4], const cf_vec low, const cf_vec high) {
