@@ -95,6 +95,9 @@ typedef struct cf_model {
   /* The state has been read back from a checkpoint: what is derived from it must follow. NULL: nothing is. */
   cf_status (*restored)(void *model);
 
+  /* How far the box has moved along each axis since time 0, m. NULL: it stands still. */
+  void (*moved)(const void *model, double by[3]);
+
   /* The step that `dt: auto` takes at time t, s. */
   double (*natural_dt)(const void *model, double t);
 

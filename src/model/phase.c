@@ -25,17 +25,18 @@ bool cf_crystal_is_scheduled(const cf_scene *scene) {
   return p->tau_eta.fn.in_time || p->tau_1.fn.in_time || p->alpha.fn.in_time || p->gamma.fn.in_time;
 }
 
-static cf_anisotropy_params anisotropy_of(const cf_scene_phase_anisotropy *a) {
+static cf_anisotropy_params anisotropy_of(const cf_scene *scene) {
+  const cf_scene_phase_anisotropy *a = &scene->phase.anisotropy;
   const double pi = acos(-1);
   cf_anisotropy_params p = {.angle = cf_fn_at(&a->angle.fn, 0, 0, 0, 0) * pi / 180};
-  if (!cf_fn_is_constant(&a->angle.fn)) p.angle = 0;
+  if (!cf_crystal_is_constant(scene, CF_CRYSTAL_ANGLE)) p.angle = 0;
   p.printed = a->pole == CF_SCENE_PHASE_PRINTED;
   p.polar_n = (int)a->polar_folds;
   p.polar_strength = a->polar_strength;
   if (a->law == CF_SCENE_PHASE_NONE || a->law == CF_SCENE_PHASE_DRIVING) return p;
   p.cubic = a->law == CF_SCENE_PHASE_CUBIC;
   p.n = p.cubic ? 4 : (int)a->folds;
-  p.strength = cf_fn_is_constant(&a->strength.fn) ? a->strength.fn.value : 0;
+  p.strength = cf_crystal_is_constant(scene, CF_CRYSTAL_STRENGTH) ? a->strength.fn.value : 0;
   return p;
 }
 
@@ -51,12 +52,12 @@ cf_phase_params cf_crystal_params_at(const cf_scene *scene, const double t) {
       .f_eta = p->f_eta,
       .alpha = at_time(&p->alpha, t),
       .gamma = at_time(&p->gamma, t),
-      .drive_strength = !driving                                        ? 0
-                        : cf_fn_is_constant(&p->anisotropy.strength.fn) ? p->anisotropy.strength.fn.value
-                                                                        : 1,
+      .drive_strength = !driving                                             ? 0
+                        : cf_crystal_is_constant(scene, CF_CRYSTAL_STRENGTH) ? p->anisotropy.strength.fn.value
+                                                                             : 1,
       .karma_rappel = p->driving == CF_SCENE_PHASE_KARMA_RAPPEL,
       .coupling = p->coupling,
-      .anisotropy = anisotropy_of(&p->anisotropy),
+      .anisotropy = anisotropy_of(scene),
       .star = p->star,
       .latent = p->latent,
       .D = heat->k.fn.value,
@@ -184,6 +185,11 @@ static cf_status crystal_restored(void *model) {
   return m->moves ? cf_advect_set_velocity(m->carry, m->u, &m->scene->domain.walls.walls) : CF_OK;
 }
 
+static void crystal_moved(const void *model, double by[3]) {
+  const cf_crystal *m = model;
+  if (m->window_axis >= 0) by[m->window_axis] = m->window_cells * m->grid->h;
+}
+
 static bool crystal_describe(const void *model, const int line, char *text, const size_t size) {
   const cf_crystal *m = model;
   if (line > 0) return false;
@@ -210,6 +216,7 @@ const cf_model cf_model_phase = {
     .create = cf_crystal_create,
     .destroy = cf_crystal_destroy,
     .restored = crystal_restored,
+    .moved = crystal_moved,
     .natural_dt = cf_crystal_natural_dt,
     .describe = crystal_describe,
     .step = crystal_step,

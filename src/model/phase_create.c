@@ -60,8 +60,10 @@ static cf_status make_fields(cf_crystal *m) {
   const cf_box *box = &m->grid->box;
   const cf_scene_phase *s = &m->scene->phase;
   const bool grains = has_own_angles(m->scene);
-  const bool turns =
-      grains || !cf_fn_is_constant(&s->anisotropy.angle.fn) || !cf_fn_is_constant(&s->anisotropy.strength.fn);
+  const bool turns = grains || !cf_crystal_is_constant(m->scene, CF_CRYSTAL_ANGLE) ||
+                     !cf_crystal_is_constant(m->scene, CF_CRYSTAL_STRENGTH);
+  const bool masked = s->given.mask || s->given.distance || cf_crystal_has_map(m->scene, CF_CRYSTAL_MASK) ||
+                      cf_crystal_has_map(m->scene, CF_CRYSTAL_DISTANCE);
   cf_cell *fields[] = {&m->y.eta,
                        &m->y.T,
                        &m->arrival,
@@ -72,7 +74,7 @@ static cf_status make_fields(cf_crystal *m) {
                        turns ? &m->places.strength : NULL,
                        turns ? &m->places.C : NULL,
                        turns ? &m->places.S : NULL,
-                       s->given.mask || s->given.distance ? &m->places.mobility : NULL,
+                       masked ? &m->places.mobility : NULL,
                        s->noise.amplitude > 0 ? &m->places.noise : NULL};
   for (size_t i = 0; i < sizeof fields / sizeof *fields; ++i)
     if (fields[i] != NULL) CF_TRY(cf_cell_create(fields[i], box));
@@ -173,6 +175,7 @@ static cf_status make(cf_crystal *m, cf_registry *r) {
   m->now = cf_registry_find(r, "time")->number;
   CF_TRY(CF_NEW(&m->rows, 3 * cf_box_rows(&m->grid->box)));
   CF_TRY(make_fields(m));
+  CF_TRY(cf_crystal_read_maps(scene, m->map));
   CF_TRY(cf_sources_create(&m->sources, scene, m->grid, m->T_field, "q_T", &m->acts));
   CF_TRY(cf_crystal_seed(m));
   CF_TRY(cf_crystal_make_places(m));
@@ -203,6 +206,7 @@ void cf_crystal_destroy(void *model) {
                       &m->places.mobility,
                       &m->places.noise};
   for (size_t i = 0; i < sizeof cells / sizeof *cells; ++i) cf_cell_destroy(cells[i], box);
+  cf_crystal_drop_maps(m->map);
   cf_face_destroy(&m->u, box);
   cf_advect_destroy(m->carry);
   cf_diffuse_destroy(m->diffuse);
@@ -216,7 +220,8 @@ cf_status cf_crystal_create(void **model, const cf_scene *scene, cf_registry *re
   cf_crystal *m;
   CF_TRY(CF_NEW(&m, 1));
   m->scene = scene;
-  m->grid = registry->grid;
+  m->still = *registry->grid;
+  m->grid = &m->still;
   const cf_status s = make(m, registry);
   if (s != CF_OK) {
     cf_crystal_destroy(m);

@@ -53,6 +53,20 @@ enum { CF_SCENE_SEED_BALL, CF_SCENE_SEED_DISC, CF_SCENE_SEED_BOX, CF_SCENE_SEED_
     "How far this crystal is turned in the plane; left out: as anisotropy.angle. Crystals with angles " \
     "of their own keep them as they grow")
 
+#define CF_PHASE_MAP_TABLE(P, R)                                                                             \
+  P(file, path, CF_NONE, "", "",                                                                             \
+    "A picture (.png) or an array (.npy; rows of y, in 3D planes of z or one plane for all) that fills the " \
+    "box")                                                                                                   \
+  P(range, numbers, "[0, 1]", "", "2 of (-inf, inf)",                                                        \
+    "What black and white of a picture stand for, in the "                                                   \
+    "unit of the key it replaces")
+
+#define CF_PHASE_MAPS_TABLE(P, R)                                                              \
+  R(record, mask, cf_scene_phase_map, "In place of phase.mask")                                \
+  R(record, distance, cf_scene_phase_map, "In place of phase.distance")                        \
+  R(record, angle, cf_scene_phase_map, "In place of phase.anisotropy.angle; not interpolated") \
+  R(record, strength, cf_scene_phase_map, "In place of phase.anisotropy.strength")
+
 #define CF_PHASE_NOISE_TABLE(P, R)                                                                         \
   P(amplitude, number, "0", "", "[0, inf)", "Added to psi: a number between -amplitude/2 and amplitude/2") \
   P(period, number, CF_NONE, "s", "(0, inf)", "How long each lasts; left out: 5 tau_eta")                  \
@@ -60,9 +74,11 @@ enum { CF_SCENE_SEED_BALL, CF_SCENE_SEED_DISC, CF_SCENE_SEED_BOX, CF_SCENE_SEED_
     "The noise has the symmetry of so many folds and of mirrors about the first seed; 0: it has none")     \
   P(seed, integer, "1", "", "[0, 1073741824]", "Another number gives other noise")
 
-#define CF_PHASE_WINDOW_TABLE(P, R)                                                                      \
-  P(follow, text, "", "", "", "The tip along this axis, x+, x-, y+ ...; left out: the box stands still") \
-  P(at, number, "0.6", "", "(0, 1)",                                                                     \
+#define CF_PHASE_WINDOW_TABLE(P, R)                                                                         \
+  P(follow, text, "", "", "",                                                                               \
+    "The tip along this axis, x+, y+ or z+; left out: the box stands still. Walls and sources go with it, " \
+    "what is an expression of x, y, z in `phase` or `velocity` does not")                                   \
+  P(at, number, "0.6", "", "(0, 1)",                                                                        \
     "The box moves on by whole cells so that the tip stays within this part of its length")
 
 #define CF_PHASE_TABLE(P, R)                                                                                 \
@@ -94,6 +110,7 @@ enum { CF_SCENE_SEED_BALL, CF_SCENE_SEED_DISC, CF_SCENE_SEED_BOX, CF_SCENE_SEED_
   P(mask, profile, CF_NONE, "", "",                                                                          \
     "Where it may grow: 1 yes, 0 no, between them slower; an expression in x, y, z")                         \
   P(distance, profile, CF_NONE, "m", "", "In place of mask: a signed distance, below 0 where it may grow")   \
+  R(record, maps, cf_scene_phase_maps, "Pictures and arrays in place of expressions in x, y, z")             \
   R(record, noise, cf_scene_phase_noise, "What makes side branches")                                         \
   R(record, window, cf_scene_phase_window, "A box that follows the tip")                                     \
   P(carried, word, "both", "", CF_WORDS(CF_PHASE_CARRY_WORDS),                                               \
@@ -108,6 +125,12 @@ typedef struct cf_scene_phase_anisotropy {
 typedef struct cf_scene_phase_seed {
   CF_PARAM_MEMBERS(CF_PHASE_SEED_TABLE)
 } cf_scene_phase_seed;
+typedef struct cf_scene_phase_map {
+  CF_PARAM_MEMBERS(CF_PHASE_MAP_TABLE)
+} cf_scene_phase_map;
+typedef struct cf_scene_phase_maps {
+  CF_PARAM_MEMBERS(CF_PHASE_MAPS_TABLE)
+} cf_scene_phase_maps;
 typedef struct cf_scene_phase_noise {
   CF_PARAM_MEMBERS(CF_PHASE_NOISE_TABLE)
 } cf_scene_phase_noise;

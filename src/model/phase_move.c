@@ -20,8 +20,9 @@ static const cf_function *velocity_of(const cf_scene *scene, const int axis) {
 }
 
 cf_status cf_crystal_set_flow(cf_crystal *m, const double t) {
-  for (int a = 0; a < m->grid->box.dim; ++a)
-    CF_TRY(cf_grid_sample(m->grid, &velocity_of(m->scene, a)->fn, a, t, m->u.at[a]));
+  const cf_grid at = cf_crystal_window(m);
+  for (int a = 0; a < at.box.dim; ++a)
+    CF_TRY(cf_grid_sample(&at, &velocity_of(m->scene, a)->fn, a, t, m->u.at[a]));
   return cf_advect_set_velocity(m->carry, m->u, &m->scene->domain.walls.walls);
 }
 
@@ -105,5 +106,6 @@ cf_status cf_crystal_follow(cf_crystal *m) {
   m->window_cells += by;
   m->noise_of = -1;
   cf_ledger_add(&m->heat, cf_phase_heat_content(m->phase, &m->y) - before);
+  if (m->moves && !m->velocity_in_time) CF_TRY(cf_crystal_set_flow(m, 0));
   return cf_crystal_make_places(m);
 }

@@ -6,6 +6,7 @@
  *   phase_create.c   making it
  *   phase_scene.c    its keys beyond their table, and what `check` says
  *   phase_seeds.c    seeds, orientations, masks
+ *   phase_maps.c     those of them that are pictures and arrays
  *   phase_noise.c    noise
  *   phase_move.c     the flow that carries phase and heat, and the window
  *   phase_show.c     derived fields, the surface, metrics
@@ -19,9 +20,20 @@
 #include "physics/diffuse.h"
 #include "physics/phase.h"
 
+/* What may be a picture or an array instead of an expression. */
+enum { CF_CRYSTAL_MASK, CF_CRYSTAL_DISTANCE, CF_CRYSTAL_ANGLE, CF_CRYSTAL_STRENGTH, CF_CRYSTAL_MAPS };
+
+typedef struct cf_crystal_map {
+  int n[3];
+  double origin[3], per_part[3]; /* parts a metre */
+  bool nearest;
+  float *value; /* x fastest; NULL: there is no such map */
+} cf_crystal_map;
+
 typedef struct cf_crystal {
   const cf_scene *scene;
-  const cf_grid *grid;
+  cf_grid still;          /* where the box was at time 0, as the physics knows it */
+  const cf_grid *grid;    /* that one */
   int eta_field, T_field; /* in scene->fields */
   cf_phase_params params;
   bool scheduled; /* some of them depend on t */
@@ -32,6 +44,7 @@ typedef struct cf_crystal {
   char why[160];
   cf_phase_state y;
   cf_phase_places places;
+  cf_crystal_map map[CF_CRYSTAL_MAPS];
   cf_cell grain,
       next_grain;   /* which seed a cell froze from, from 1; 0: none. Where crystals have their own angles */
   cf_cell arrival;  /* when eta passed 1/2, s; -1: it has not */
@@ -68,6 +81,14 @@ void cf_crystal_note_arrival(cf_crystal *m, double t); /* cells that passed 1/2 
 double cf_crystal_far_T(const cf_crystal *m);          /* what T comes in with */
 void cf_crystal_make_noise(cf_crystal *m, double t);
 double cf_crystal_centre(const cf_crystal *m, int axis); /* in the box as it is now */
+cf_grid cf_crystal_window(const cf_crystal *m);          /* the grid where the box is now */
+
+bool cf_crystal_has_map(const cf_scene *scene, int which);
+bool cf_crystal_is_constant(const cf_scene *scene, int which); /* one number everywhere */
+/* Into zeroed maps; CF_BAD_SCENE at the key of a file that cannot be read. */
+cf_status cf_crystal_read_maps(const cf_scene *scene, cf_crystal_map map[CF_CRYSTAL_MAPS]);
+void cf_crystal_drop_maps(cf_crystal_map map[CF_CRYSTAL_MAPS]);
+cf_fn cf_crystal_map_fn(const cf_crystal *m, int which); /* the map, or the expression where there is none */
 
 /* --- flow and window -------------------------------------------------------------------------------------- */
 

@@ -67,6 +67,36 @@ static cf_status check_anisotropy(const cf_scene *scene) {
   return CF_OK;
 }
 
+/* Of the ways to say one thing a scene takes one; and its pictures can be read. */
+static cf_status check_maps(const cf_scene *scene) {
+  const cf_scene_phase *p = &scene->phase;
+  cf_crystal_map map[CF_CRYSTAL_MAPS] = {{.value = NULL}};
+  const struct {
+    const char *key, *other;
+    bool both;
+  } pairs[] = {
+      {"phase.distance", "phase.mask", p->given.mask && p->given.distance},
+      {"phase.maps.mask", "phase.mask", p->given.mask && cf_crystal_has_map(scene, CF_CRYSTAL_MASK)},
+      {"phase.maps.mask", "phase.distance", p->given.distance && cf_crystal_has_map(scene, CF_CRYSTAL_MASK)},
+      {"phase.maps.distance", "phase.mask", p->given.mask && cf_crystal_has_map(scene, CF_CRYSTAL_DISTANCE)},
+      {"phase.maps.distance", "phase.distance",
+       p->given.distance && cf_crystal_has_map(scene, CF_CRYSTAL_DISTANCE)},
+      {"phase.maps.distance", "phase.maps.mask",
+       cf_crystal_has_map(scene, CF_CRYSTAL_MASK) && cf_crystal_has_map(scene, CF_CRYSTAL_DISTANCE)},
+      {"phase.maps.angle", "phase.anisotropy.angle",
+       p->anisotropy.given.angle && cf_crystal_has_map(scene, CF_CRYSTAL_ANGLE)},
+      {"phase.maps.strength", "phase.anisotropy.strength",
+       p->anisotropy.given.strength && cf_crystal_has_map(scene, CF_CRYSTAL_STRENGTH)},
+  };
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i)
+    if (pairs[i].both)
+      return cf_scene_fail_at(scene, pairs[i].key, "%s: %s says the same already", pairs[i].key,
+                              pairs[i].other);
+  const cf_status s = cf_crystal_read_maps(scene, map);
+  cf_crystal_drop_maps(map);
+  return s;
+}
+
 static cf_status check_window(const cf_scene *scene) {
   const char *follow = scene->phase.window.follow;
   if (follow[0] == '\0') return CF_OK;
@@ -118,8 +148,7 @@ cf_status cf_crystal_resolve(cf_scene *scene) {
   CF_TRY(check_in_time(scene, &p->alpha, "phase.alpha", 0));
   for (int i = 0; i < p->seeds.count; ++i) CF_TRY(check_seed(scene, i));
   CF_TRY(check_anisotropy(scene));
-  if (p->given.mask && p->given.distance)
-    return cf_scene_fail_at(scene, "phase.distance", "phase.distance: phase.mask says the same already");
+  CF_TRY(check_maps(scene));
   if (p->form == CF_SCENE_PHASE_PAPER && p->scheme == CF_SCENE_PHASE_IMPLICIT)
     return cf_scene_fail_at(scene, "phase.scheme", "phase.scheme: the paper's form has explicit steps only");
   if (!p->noise.given.period) {

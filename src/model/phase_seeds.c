@@ -105,6 +105,12 @@ double cf_crystal_centre(const cf_crystal *m, const int axis) {
   return m->centre[axis] - (axis == m->window_axis ? m->window_cells * m->grid->h : 0);
 }
 
+cf_grid cf_crystal_window(const cf_crystal *m) {
+  cf_grid at = *m->grid;
+  if (m->window_axis >= 0) at.origin[m->window_axis] += m->window_cells * at.h;
+  return at;
+}
+
 /* --- places ----------------------------------------------------------------------------------------------- */
 
 static void fill_ghosts(const cf_crystal *m, const cf_cell f) {
@@ -160,32 +166,38 @@ static void mask_from_distance(const cf_crystal *m) {
     }
 }
 
-static cf_status check_mask(const cf_crystal *m) {
-  const cf_range range = cf_sweep_range(&m->grid->box, m->grid->threads, m->places.mobility.at, m->rows);
+static cf_status check_between(const cf_crystal *m, const cf_cell f, const char *key) {
+  const cf_range range = cf_sweep_range(&m->grid->box, m->grid->threads, f.at, m->rows);
   if (range.min >= 0 && range.max <= 1) return CF_OK;
-  return cf_scene_fail_at(m->scene, "phase.mask", "phase.mask is between %g and %g: must be between 0 and 1",
-                          range.min, range.max);
+  return cf_scene_fail_at(m->scene, key, "%s is between %g and %g: must be between 0 and 1", key, range.min,
+                          range.max);
+}
+
+static cf_status sample(const cf_crystal *m, const cf_grid *at, const int which, const cf_cell f) {
+  const cf_fn fn = cf_crystal_map_fn(m, which);
+  return cf_grid_sample(at, &fn, CF_CENTRES, 0, f.at);
 }
 
 /* Sampled where the window is now. */
 cf_status cf_crystal_make_places(cf_crystal *m) {
   const cf_scene_phase *s = &m->scene->phase;
-  cf_grid at = *m->grid;
-  if (m->window_axis >= 0) at.origin[m->window_axis] += m->window_cells * at.h;
+  const cf_grid at = cf_crystal_window(m);
   if (m->places.mobility.at != NULL) {
-    const cf_fn *f = s->given.mask ? &s->mask.fn : &s->distance.fn;
-    CF_TRY(cf_grid_sample(&at, f, CF_CENTRES, 0, m->places.mobility.at));
-    if (!s->given.mask) mask_from_distance(m);
-    CF_TRY(check_mask(m));
+    const bool mask = s->given.mask || m->map[CF_CRYSTAL_MASK].value != NULL;
+    CF_TRY(sample(m, &at, mask ? CF_CRYSTAL_MASK : CF_CRYSTAL_DISTANCE, m->places.mobility));
+    if (!mask) mask_from_distance(m);
+    CF_TRY(check_between(m, m->places.mobility, mask && !s->given.mask ? "phase.maps.mask" : "phase.mask"));
   }
   if (m->places.strength.at == NULL) return CF_OK;
-  CF_TRY(cf_grid_sample(&at, &s->anisotropy.strength.fn, CF_CENTRES, 0, m->places.strength.at));
+  CF_TRY(sample(m, &at, CF_CRYSTAL_STRENGTH, m->places.strength));
+  if (m->map[CF_CRYSTAL_STRENGTH].value != NULL)
+    CF_TRY(check_between(m, m->places.strength, "phase.maps.strength"));
   fill_ghosts(m, m->places.strength);
   if (m->grain.at != NULL) {
     cf_crystal_turn(m);
     return CF_OK;
   }
-  CF_TRY(cf_grid_sample(&at, &s->anisotropy.angle.fn, CF_CENTRES, 0, m->places.C.at));
+  CF_TRY(sample(m, &at, CF_CRYSTAL_ANGLE, m->places.C));
   turn_cells(m);
   fill_ghosts(m, m->places.C);
   fill_ghosts(m, m->places.S);

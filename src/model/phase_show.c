@@ -73,10 +73,11 @@ cf_status cf_crystal_derive(void *model, const int i, const cf_cell out) {
 /* The surface eta = 1/2, always by the same rule, with the age, temperature and heat flux at its vertices. */
 cf_status cf_crystal_mesh(void *model, struct cf_mesh *mesh) {
   cf_crystal *m = model;
+  const cf_grid at = cf_crystal_window(m);
   if (m->grid->box.dim == 2) return cf_mesh_resize(mesh, 0, 0, false);
-  CF_TRY(cf_isosurface_make(mesh, m->grid, m->y.eta, &(cf_isosurface){.level = 0.5, .caps = true}));
-  CF_TRY(cf_mesh_sample(mesh, m->grid, m->y.T, "T", "K"));
-  CF_TRY(cf_mesh_sample(mesh, m->grid, m->arrival, "arrival", "s"));
+  CF_TRY(cf_isosurface_make(mesh, &at, m->y.eta, &(cf_isosurface){.level = 0.5, .caps = true}));
+  CF_TRY(cf_mesh_sample(mesh, &at, m->y.T, "T", "K"));
+  CF_TRY(cf_mesh_sample(mesh, &at, m->arrival, "arrival", "s"));
   static const struct {
     int what;
     const char *name, *unit;
@@ -85,7 +86,7 @@ cf_status cf_crystal_mesh(void *model, struct cf_mesh *mesh) {
     cf_cell values;
     CF_TRY(cf_cell_create(&values, &m->grid->box));
     cf_status s = cf_crystal_derive(m, more[i].what, values);
-    if (s == CF_OK) s = cf_mesh_sample(mesh, m->grid, values, more[i].name, more[i].unit);
+    if (s == CF_OK) s = cf_mesh_sample(mesh, &at, values, more[i].name, more[i].unit);
     cf_cell_destroy(&values, &m->grid->box);
     CF_TRY(s);
   }

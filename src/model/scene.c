@@ -82,6 +82,12 @@ CF_PARAM_TABLE(cf_scene_phase_anisotropy, CF_PHASE_ANISOTROPY_TABLE)
 #define CF_PARAM_STRUCT cf_scene_phase_seed
 CF_PARAM_TABLE(cf_scene_phase_seed, CF_PHASE_SEED_TABLE)
 #undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_phase_map
+CF_PARAM_TABLE(cf_scene_phase_map, CF_PHASE_MAP_TABLE)
+#undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_phase_maps
+CF_PARAM_TABLE(cf_scene_phase_maps, CF_PHASE_MAPS_TABLE)
+#undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene_phase_noise
 CF_PARAM_TABLE(cf_scene_phase_noise, CF_PHASE_NOISE_TABLE)
 #undef CF_PARAM_STRUCT

@@ -101,8 +101,21 @@ void cf_sim_destroy(cf_sim *sim) {
   cf_free(sim);
 }
 
+/* What is written and shown stands where the box is now; the model's own grid stays. */
+static void place_box(cf_sim *sim) {
+  double by[3] = {0};
+  if (sim->model->moved == NULL) return;
+  sim->model->moved(sim->state, by);
+  for (int a = 0; a < sim->scene->dim; ++a) {
+    const cf_param_numbers *origin = &sim->scene->domain.origin;
+    sim->grid.origin[a] = (a < origin->count ? origin->value[a] : 0) + by[a];
+  }
+}
+
 cf_status cf_sim_restored(cf_sim *sim) {
-  return sim->model->restored != NULL ? sim->model->restored(sim->state) : CF_OK;
+  if (sim->model->restored != NULL) CF_TRY(sim->model->restored(sim->state));
+  place_box(sim);
+  return CF_OK;
 }
 
 /* --- frames -----------------------------------------------------------------------------------------------
@@ -146,6 +159,7 @@ static cf_status make_step(cf_sim *sim, const double t, const double dt) {
   memset(&sim->report, 0, sizeof sim->report);
   sim->report.solve.converged = true;
   CF_TRY(sim->model->step(sim->state, t, dt, &sim->report));
+  place_box(sim);
   snprintf(sim->warning, sizeof sim->warning, "%s", sim->report.warning);
   return CF_OK;
 }
