@@ -78,17 +78,28 @@ static cf_status move_water(cf_gel *g, const double t, const double dt, double *
     still_water(g);
     return CF_OK;
   }
+  if (g->mpm->mixture != NULL) cf_mpm_mix(g->mpm);
   CF_TRY(cf_poro_step(g->poro, g->mpm->nodes, t, dt, gained, &solve));
   cf_step_report_add(report, CF_STAGE_DIFFUSE, &solve);
   return CF_OK;
 }
 
+/* Every body by what its own k does to a wave as long as two cells. */
 static void filter(cf_gel *g, const double dt) {
   if (g->poro == NULL) return;
-  g->filter_due += cf_poro_filter_rate(&g->poro->p, g->lattice.h) * dt;
-  if (g->filter_due < FILTER_WORTH) return;
-  cf_mpm_filter(g->mpm, -expm1(-g->filter_due));
-  g->filter_due = 0;
+  const int bodies = g->keys->bodies.count;
+  double most = 0;
+  for (int i = 0; i < bodies; ++i) {
+    const cf_mpm_material *a = &g->material[i];
+    g->filter_due[i] += cf_poro_filter_rate(a->k, g->poro->p.tau, a->f_t, g->lattice.h) * dt;
+    most = CF_MAX(most, g->filter_due[i]);
+  }
+  if (most < FILTER_WORTH) return;
+  for (int i = 0; i < bodies; ++i) {
+    g->eta[i] = -expm1(-g->filter_due[i]);
+    g->filter_due[i] = 0;
+  }
+  cf_mpm_filter(g->mpm, g->eta);
 }
 
 static cf_status gel_step(void *model, const double t, const double dt, cf_step_report *report) {

@@ -75,13 +75,15 @@ static cf_status make_tables(cf_gel *g) {
   const int walls = 2 * g->grid->box.dim, most = walls + g->scene->obstacles.count,
             sources = CF_MAX(1, g->keys->water.count);
   CF_TRY(CF_NEW(&g->material, g->keys->bodies.count));
+  CF_TRY(CF_NEW(&g->filter_due, g->keys->bodies.count));
+  CF_TRY(CF_NEW(&g->eta, g->keys->bodies.count));
   CF_TRY(CF_NEW(&g->obstacle, most));
   CF_TRY(CF_NEW(&g->shape, walls));
   CF_TRY(CF_NEW(&g->source, sources));
   CF_TRY(CF_NEW(&g->place, sources));
   CF_TRY(CF_NEW(&g->dry, sources));
   CF_TRY(CF_NEW(&g->given, sources));
-  for (int i = 0; i < g->keys->bodies.count; ++i) g->material[i] = cf_gel_material(&g->keys->bodies.item[i]);
+  for (int i = 0; i < g->keys->bodies.count; ++i) g->material[i] = cf_gel_material(g->scene, i);
   make_walls(g);
   CF_TRY(cf_obstacles_create(&g->solids, g->scene, g->grid));
   make_obstacles(g);
@@ -101,7 +103,19 @@ static cf_status make_particles(cf_gel *g) {
   return cf_gel_fill(g);
 }
 
+/* Whether bodies differ in k or F_T; *most: the largest k. */
+static bool is_mixture(const cf_gel *g, double *most) {
+  bool mixed = false;
+  *most = 0;
+  for (int i = 0; i < g->keys->bodies.count; ++i) {
+    mixed = mixed || g->material[i].k != g->material[0].k || g->material[i].f_t != g->material[0].f_t;
+    *most = CF_MAX(*most, g->material[i].k);
+  }
+  return mixed;
+}
+
 static cf_status make_solvers(cf_gel *g) {
+  double most;
   cf_mpm_params p = {.materials = g->keys->bodies.count,
                      .material = g->material,
                      .obstacles = g->obstacles,
@@ -109,15 +123,17 @@ static cf_status make_solvers(cf_gel *g) {
                      .flip = g->keys->transfer == CF_GEL_TRANSFER_FLIP ? g->keys->flip : -1,
                      .implicitness = g->keys->implicitness,
                      .damping = g->keys->damping,
+                     .mixture = is_mixture(g, &most),
                      .solver = {g->scene->solver.tolerance, (int)g->scene->solver.max_iterations}};
   for (int a = 0; a < g->keys->gravity.count; ++a) p.gravity[a] = g->keys->gravity.value[a];
   CF_TRY(cf_mpm_create(&g->mpm, &g->lattice, g->set, &g->at, &p));
   for (int i = 0; i < 3; ++i) CF_TRY(cf_cell_create(&g->on_lattice[i], &g->lattice.box));
   const cf_scene_diffusion *d = &g->scene->diffusion;
-  if (!(d->k.fn.value > 0) && g->sources == 0) return CF_OK;
-  const cf_poro_params w = {.k = d->k.fn.value,
+  if (!(most > 0) && g->sources == 0) return CF_OK;
+  const cf_poro_params w = {.k = g->material[0].k,
                             .tau = d->tau,
-                            .f_t = d->f_t,
+                            .f_t = g->material[0].f_t,
+                            .mixture = g->mpm->mixture,
                             .two_stages = d->scheme != CF_SCENE_SCHEME_PAPER,
                             .solver = p.solver,
                             .sources = g->sources,
@@ -129,7 +145,7 @@ static cf_status add_state(cf_gel *g, cf_registry *r) {
   CF_TRY(cf_registry_add_particles(r, g->set));
   CF_TRY(cf_registry_add_numbers(r, "water_ledger", "kg", &g->water.first, 3));
   if (g->sources > 0) CF_TRY(cf_registry_add_numbers(r, "water_given", "kg", g->given, g->sources));
-  return cf_registry_add_numbers(r, "filter_due", "", &g->filter_due, 1);
+  return cf_registry_add_numbers(r, "filter_due", "", g->filter_due, g->keys->bodies.count);
 }
 
 static cf_status make(cf_gel *g, cf_registry *r) {
@@ -166,7 +182,8 @@ void cf_gel_destroy(void *model) {
   cf_particles_destroy(g->set);
   for (int i = 0; i < 3; ++i) cf_cell_destroy(&g->on_lattice[i], &g->lattice.box);
   cf_obstacles_destroy(&g->solids);
-  void *tables[] = {g->material, g->obstacle, g->shape, g->source, g->place, g->dry, g->given};
+  void *tables[] = {g->material, g->filter_due, g->eta, g->obstacle, g->shape,
+                    g->source,   g->place,      g->dry, g->given};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; ++i) cf_free(tables[i]);
   cf_free(g);
 }

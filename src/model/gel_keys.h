@@ -52,6 +52,9 @@ enum { CF_GEL_TRANSFER_APIC, CF_GEL_TRANSFER_FLIP };
   P(solid_density, number, "10", "kg/m^3", "(0, inf)", "Of the body's solid part")                           \
   P(fluid_density, number, "1", "kg/m^3", "(0, inf)", "rho_f, of the water")                                 \
   P(porosity, number, "0.7", "", "[0, 1)", "phi_p: the share of the body's volume that water can fill")      \
+  P(k, number, CF_NONE, "m^2/s", "[0, inf)",                                                                 \
+    "Of this body; left out: diffusion.k. tau is that of all bodies")                                        \
+  P(f_t, number, CF_NONE, "", "[0, 1]", "F_T of this body; left out: diffusion.f_t")                         \
   P(inertia_saturation, number, "0", "", "[0, inf)",                                                         \
     "Inertia and weight are those of the body with its pores filled to this share: a mass that does not "    \
     "follow "                                                                                                \

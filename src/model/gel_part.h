@@ -37,7 +37,7 @@ typedef struct cf_gel {
   cf_cell on_lattice[3]; /* fill, saturation, J: where surfaces are made */
   double *given;         /* by each source */
   cf_ledger water;
-  double filter_due; /* the exponent that the filter has not had yet */
+  double *filter_due, *eta; /* of each body: the exponent that the filter has not had yet, and what follows */
 } cf_gel;
 
 cf_status cf_gel_create(void **model, const cf_scene *scene, cf_registry *registry);
@@ -52,7 +52,7 @@ double cf_gel_count(const cf_scene *scene);
 cf_status cf_gel_resolve(cf_scene *scene);
 double cf_gel_memory(const cf_scene *scene);
 cf_status cf_gel_check(const cf_scene *scene, double dt, const cf_page *page);
-cf_mpm_material cf_gel_material(const cf_scene_gel_body *b);
+cf_mpm_material cf_gel_material(const cf_scene *scene, int body);
 cf_status cf_gel_lattice(const cf_scene *scene, cf_grid *lattice, int offset[3]);
 
 /* gel_show.c */

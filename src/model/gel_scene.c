@@ -12,7 +12,8 @@ enum { KEY_MAX = 96 };
 
 /* --- what follows from keys -------------------------------------------------------------------------------- */
 
-cf_mpm_material cf_gel_material(const cf_scene_gel_body *b) {
+cf_mpm_material cf_gel_material(const cf_scene *scene, const int body) {
+  const cf_scene_gel_body *b = &scene->gel.bodies.item[body];
   const double E = b->young, nu = b->poisson, pores = b->porosity * b->fluid_density;
   return (cf_mpm_material){
       .law = b->law == CF_GEL_LAW_NEO_HOOKEAN ? CF_MPM_NEO_HOOKEAN : CF_MPM_COROTATED,
@@ -24,6 +25,8 @@ cf_mpm_material cf_gel_material(const cf_scene_gel_body *b) {
       .swelling = b->swelling,
       .density = (1 - b->porosity) * b->solid_density + b->inertia_saturation * pores,
       .water = pores,
+      .k = b->given.k ? b->k : scene->diffusion.k.fn.value,
+      .f_t = b->given.f_t ? b->f_t : scene->diffusion.f_t,
   };
 }
 
@@ -126,7 +129,7 @@ cf_status cf_gel_check(const cf_scene *scene, const double dt, const cf_page *pa
   char text[160];
   double fastest = 0, stiffest = 0;
   for (int i = 0; i < scene->gel.bodies.count; ++i) {
-    const cf_mpm_material m = cf_gel_material(&scene->gel.bodies.item[i]);
+    const cf_mpm_material m = cf_gel_material(scene, i);
     fastest = CF_MAX(fastest, sqrt((m.lambda + 2 * m.mu + m.swelling) / m.density));
     stiffest = CF_MAX(stiffest, m.swelling / (m.lambda + 2 * m.mu));
   }

@@ -57,6 +57,7 @@ static cf_status make_vectors(cf_mpm *m) {
     CF_TRY(cf_pages_reserve((void **)flip[i], vectors_bytes(m), false));
   for (size_t i = 0; m->p.implicitness > 0 && i < sizeof implicit / sizeof *implicit; ++i)
     CF_TRY(cf_pages_reserve((void **)implicit[i], vectors_bytes(m), false));
+  if (m->p.mixture) CF_TRY(cf_pages_reserve((void **)&m->mixture, vectors_bytes(m), false));
   for (int i = 0; i < 2; ++i) CF_TRY(cf_pages_reserve((void **)&m->rest[i], rest_bytes(m), false));
   return CF_OK;
 }
@@ -86,7 +87,7 @@ cf_status cf_mpm_create(cf_mpm **m, const cf_grid *lattice, cf_particles *set, c
 
 void cf_mpm_destroy(cf_mpm *m) {
   if (m == NULL) return;
-  cf_lanes *all[] = {m->force, m->old, m->residual, m->along, m->applied, m->normal};
+  cf_lanes *all[] = {m->force, m->old, m->residual, m->along, m->applied, m->normal, m->mixture};
   for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
     if (all[i] != NULL) cf_pages_release(all[i], vectors_bytes(m));
   for (int i = 0; i < 2; ++i) cf_pages_release(m->rest[i], rest_bytes(m));

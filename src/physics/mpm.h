@@ -40,6 +40,7 @@ typedef struct cf_mpm_material {
   double swelling;             /* chi, Pa */
   double density;              /* inertia per initial volume, kg/m^3 */
   double water;                /* c_0 per initial volume: mass of water at S = 1, J = 1 */
+  double k, f_t;               /* of the water in it, for cf_mpm_mix */
 } cf_mpm_material;
 
 /* sticky: moves with the obstacle; slip: along it; separate: along it or away. Friction (Coulomb's) acts with the last
@@ -63,6 +64,7 @@ typedef struct cf_mpm_params {
   double flip;         /* share of FLIP in velocities, 0 ... 1; < 0: APIC */
   double implicitness; /* beta of (35), 0 ... 1; 0: symplectic Euler */
   double damping;      /* velocities decay at this rate, 1/s */
+  bool mixture;        /* materials differ in k or F_T, and cf_mpm_mix will be called */
   cf_solve_options solver;
 } cf_mpm_params;
 
@@ -79,6 +81,7 @@ typedef struct cf_mpm {
   cf_nodes *nodes;
   bool plastic;                         /* some material is */
   cf_lanes *force, *old;                /* FLIP: sums of forces, changes of velocity */
+  cf_lanes *mixture;                    /* see cf_mpm_mix; NULL: none */
   cf_lanes *residual, *along, *applied; /* semi-implicit: vectors on nodes */
   cf_lanes *normal;                     /* ... and what of a node obstacles hold */
   cf_real *rest[2];                     /* the filter: (1 - P) z of every particle */
@@ -106,9 +109,13 @@ typedef struct cf_mpm_limits {
 } cf_mpm_limits;
 cf_mpm_limits cf_mpm_limits_of(const cf_mpm *m);
 
-/* Takes out of m_f and A what the grid cannot see: z -= eta (1 - P)^2 z for z = m_f/c and A/c, where
- * (P z)_p = sum_i w_ip (sum_q w_iq c_q z_q)/C_i. Keeps sum c z; the spectrum of P is in [0, 1]. Uses the nodes. */
-void cf_mpm_filter(cf_mpm *m, double eta);
+/* After cf_mpm_scatter: m->mixture has the sums over particles of w c, w c k, w c k F_T, in the layout of nodes->at. */
+void cf_mpm_mix(cf_mpm *m);
+
+/* Takes out of m_f and A what the grid cannot see: z -= (1 - P) eta (1 - P) z for z = m_f/c and A/c, where
+ * (P z)_p = sum_i w_ip (sum_q w_iq c_q z_q)/C_i and eta is one number a material. Keeps sum c z; the spectrum of P is in
+ * [0, 1]. Uses the nodes. */
+void cf_mpm_filter(cf_mpm *m, const double *eta);
 
 /* Sums over the particles, in a fixed order. angular: about the origin (z in 2D). */
 typedef struct cf_mpm_sums {

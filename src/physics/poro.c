@@ -15,19 +15,33 @@ static const double SDIRK_GAMMA = 0.29289321881345254; /* 1 - 1/sqrt 2 */
 
 /* --- the object -------------------------------------------------------------------------------------------- */
 
-#define FIELDS 10
+/* All of them; the last ones are made where there is a mixture. */
+#define FIELDS      12
+#define FACES       3
+#define MIXED_CELLS 2
+#define MIXED_FACES 2
 static void list_fields(cf_poro *w, cf_cell *list[FIELDS]) {
-  cf_cell *all[FIELDS] = {&w->C, &w->m, &w->A, &w->fill, &w->S, &w->b, &w->alpha, &w->value, &w->m0, &w->A0};
+  cf_cell *all[FIELDS] = {&w->C,     &w->m,     &w->A,  &w->fill, &w->S, &w->b,
+                          &w->alpha, &w->value, &w->m0, &w->A0,   &w->k, &w->k_now};
   for (int i = 0; i < FIELDS; ++i) list[i] = all[i];
+}
+static void list_faces(cf_poro *w, cf_face *list[FACES]) {
+  cf_face *all[FACES] = {&w->beta, &w->kappa, &w->kappa_now};
+  for (int i = 0; i < FACES; ++i) list[i] = all[i];
 }
 
 static cf_status fill_in(cf_poro *w) {
   const cf_walls walls = {0};
   cf_cell *list[FIELDS];
+  cf_face *faces[FACES];
+  const bool mixed = w->p.mixture != NULL;
   CF_TRY(cf_tiles_create(&w->tiles, &w->grid->box, NULL));
   list_fields(w, list);
-  for (int i = 0; i < FIELDS; ++i) CF_TRY(cf_tiles_cell_create(w->tiles, list[i]));
-  CF_TRY(cf_tiles_face_create(w->tiles, &w->beta));
+  list_faces(w, faces);
+  for (int i = 0; i < (mixed ? FIELDS : FIELDS - MIXED_CELLS); ++i)
+    CF_TRY(cf_tiles_cell_create(w->tiles, list[i]));
+  for (int i = 0; i < (mixed ? FACES : FACES - MIXED_FACES); ++i)
+    CF_TRY(cf_tiles_face_create(w->tiles, faces[i]));
   CF_TRY(cf_pages_reserve((void **)&w->kind, (size_t)w->grid->box.size, false));
   CF_TRY(cf_pages_reserve((void **)&w->wet, (size_t)w->grid->box.size, false));
   CF_TRY(CF_NEW(&w->rows, cf_box_rows(&w->grid->box)));
@@ -57,9 +71,11 @@ cf_status cf_poro_create(cf_poro **w, const cf_grid *lattice, const cf_poro_para
 void cf_poro_destroy(cf_poro *w) {
   if (w == NULL) return;
   cf_cell *list[FIELDS];
+  cf_face *faces[FACES];
   list_fields(w, list);
+  list_faces(w, faces);
   for (int i = 0; i < FIELDS; ++i) cf_cell_destroy(list[i], &w->grid->box);
-  cf_face_destroy(&w->beta, &w->grid->box);
+  for (int i = 0; i < FACES; ++i) cf_face_destroy(faces[i], &w->grid->box);
   cf_pages_release(w->kind, (size_t)w->grid->box.size);
   cf_pages_release(w->wet, (size_t)w->grid->box.size);
   cf_helmholtz_destroy(w->solver);
@@ -69,10 +85,10 @@ void cf_poro_destroy(cf_poro *w) {
   cf_free(w);
 }
 
-double cf_poro_filter_rate(const cf_poro_params *p, const double h) {
-  const double K2 = 16 / (h * h), b = 1 + p->f_t * p->tau * p->k * K2, under = b * b - 4 * p->tau * p->k * K2;
-  if (under < 0) return b / (2 * p->tau);
-  return 2 * p->k * K2 / (b + sqrt(under));
+double cf_poro_filter_rate(const double k, const double tau, const double f_t, const double h) {
+  const double K2 = 16 / (h * h), b = 1 + f_t * tau * k * K2, under = b * b - 4 * tau * k * K2;
+  if (under < 0) return b / (2 * tau);
+  return 2 * k * K2 / (b + sqrt(under));
 }
 
 /* --- between nodes and fields ------------------------------------------------------------------------------ */
@@ -96,13 +112,17 @@ static void add_tiles(cf_poro *w, const cf_nodes *nodes, const int32_t b) {
 /* The tiles of this step; fields become 0 where tiles are new or cells may have been left. */
 static cf_status follow(cf_poro *w, const cf_nodes *nodes) {
   cf_cell *list[FIELDS];
+  cf_face *faces[FACES];
   cf_tiles_drop_all(w->tiles);
   if (w->p.dense) cf_tiles_add_box(w->tiles, (int[3]){0, 0, 0}, w->grid->box.n);
   for (int32_t b = 0; b < nodes->count && !w->p.dense; ++b) add_tiles(w, nodes, b);
   CF_TRY(cf_tiles_update(w->tiles));
   list_fields(w, list);
-  for (int i = 0; i < FIELDS; ++i) cf_tiles_retire_cell(w->tiles, *list[i]);
-  cf_tiles_retire_face(w->tiles, w->beta);
+  list_faces(w, faces);
+  for (int i = 0; i < FIELDS; ++i)
+    if (list[i]->at != NULL) cf_tiles_retire_cell(w->tiles, *list[i]);
+  for (int i = 0; i < FACES; ++i)
+    if (faces[i]->at[0] != NULL) cf_tiles_retire_face(w->tiles, *faces[i]);
   cf_tiles_retire_bytes(w->tiles, w->kind + w->grid->box.first, 1);
   cf_tiles_retire_bytes(w->tiles, w->wet + w->grid->box.first, 1);
   cf_region_retire(w->region);
@@ -145,6 +165,10 @@ static void fetch(const cf_poro *w, const cf_nodes *nodes) {
     w->m.at[p] = (*node)[CF_NODE_WATER];
     w->A.at[p] = (*node)[CF_NODE_MEMORY];
     w->fill.at[p] = (*node)[CF_NODE_FILL];
+    if (w->p.mixture == NULL) continue;
+    const cf_lanes *of = &w->p.mixture[(ptrdiff_t)b * CF_BLOCK_NODES + n];
+    w->k.at[p] = (*of)[0] > 0 ? (*of)[1] / (*of)[0] : 0;
+    w->k_now.at[p] = (*of)[0] > 0 ? (*of)[2] / (*of)[0] : 0;
   }
 }
 
@@ -166,7 +190,7 @@ static void give(const cf_poro *w, const cf_nodes *nodes) {
 
 /* --- stages ------------------------------------------------------------------------------------------------ */
 
-/* What the held cells around free cell p bring: the sum of kappa, and of kappa times their values. */
+/* What the held cells around free cell p bring, with k = 1: the sum of kappa, and of kappa times their values. */
 typedef struct held_sum {
   double conductance, value;
 } held_sum;
@@ -190,18 +214,23 @@ static bool is_near(const cf_poro *w, const ptrdiff_t p) {
   return w->kind[p + w->grid->box.first] == CF_PORO_NEAR;
 }
 
-/* alpha, which no stage changes. beta: of the stage. */
-static void make_alpha(const cf_poro *w, const double beta) {
+/* A cell's beta over the kappa that it would have with k = 1. */
+static double beta_of(const cf_poro *w, const ptrdiff_t p) {
+  return w->slow * cf_poro_k(w, p) + w->fast * cf_poro_k_now(w, p);
+}
+
+/* alpha, which no stage changes. */
+static void make_alpha(const cf_poro *w) {
   FOR_CELLS(w, p) {
     const bool free = cf_poro_is_free(w, p);
     w->alpha.at[p] = free ? w->C.at[p] : (cf_real)1;
-    if (free && is_near(w, p)) w->alpha.at[p] += (cf_real)(beta * held_around(w, p).conductance);
+    if (free && is_near(w, p)) w->alpha.at[p] += (cf_real)(beta_of(w, p) * held_around(w, p).conductance);
   }
   END_CELLS
 }
 
-/* b and the guess of S. left: tau d/(tau + d); rate: water added in the stage. */
-static void make_right_side(const cf_poro *w, const double left, const double beta) {
+/* b and the guess of S. left: tau d/(tau + d). */
+static void make_right_side(const cf_poro *w, const double left) {
   FOR_CELLS(w, p) {
     w->b.at[p] = 0;
     if (!cf_poro_is_free(w, p)) {
@@ -209,16 +238,49 @@ static void make_right_side(const cf_poro *w, const double left, const double be
       continue;
     }
     double sum = (double)w->m.at[p] - left * (double)w->A.at[p];
-    if (is_near(w, p)) sum += beta * held_around(w, p).value;
+    if (is_near(w, p)) sum += beta_of(w, p) * held_around(w, p).value;
     w->b.at[p] = (cf_real)sum;
     w->S.at[p] = w->m.at[p] / w->C.at[p];
   }
   END_CELLS
 }
 
+/* L S, and its part L_F S. */
+typedef struct conducted {
+  double all, now;
+} conducted;
+
+static double through_faces(const cf_poro *w, const cf_face kappa, const ptrdiff_t p) {
+  const double S = (double)w->S.at[p];
+  double L = 0;
+  for (int a = 0; a < w->grid->box.dim; ++a) {
+    const ptrdiff_t s = w->grid->box.stride[a];
+    L += (double)kappa.at[a][p + s] * ((double)w->S.at[p + s] - S) +
+         (double)kappa.at[a][p] * ((double)w->S.at[p - s] - S);
+  }
+  return L;
+}
+
+static conducted conducted_to(const cf_poro *w, const ptrdiff_t p) {
+  conducted L;
+  if (w->p.mixture == NULL) {
+    L.all = w->scale > 0 ? through_faces(w, w->beta, p) / w->scale : 0;
+    L.now = w->p.f_t * L.all;
+  } else {
+    L.all = through_faces(w, w->kappa, p);
+    L.now = through_faces(w, w->kappa_now, p);
+  }
+  if (!is_near(w, p)) return L;
+  const held_sum held = held_around(w, p);
+  const double from_held = held.value - held.conductance * (double)w->S.at[p];
+  L.all += cf_poro_k(w, p) * from_held;
+  L.now += cf_poro_k_now(w, p) * from_held;
+  return L;
+}
+
 static void finish_stage(const cf_poro *w, const double d) {
   const cf_box *box = &w->grid->box;
-  const double tau = w->p.tau, f_t = w->p.f_t, per = w->scale > 0 ? 1 / w->scale : 0;
+  const double tau = w->p.tau;
   FOR_CELLS(w, p) {
     if (w->kind[p + box->first] == CF_PORO_NONE) continue;
     if (!cf_poro_is_free(w, p)) {
@@ -226,20 +288,9 @@ static void finish_stage(const cf_poro *w, const double d) {
       w->A.at[p] *= (cf_real)(tau / (tau + d));
       continue;
     }
-    const double S = (double)w->S.at[p];
-    double L = 0;
-    for (int a = 0; a < box->dim; ++a) {
-      const ptrdiff_t s = box->stride[a];
-      L += (double)w->beta.at[a][p + s] * ((double)w->S.at[p + s] - S) +
-           (double)w->beta.at[a][p] * ((double)w->S.at[p - s] - S);
-    }
-    L *= per;
-    if (is_near(w, p)) {
-      const held_sum held = held_around(w, p);
-      L += held.value - held.conductance * S;
-    }
-    const double A = (tau * (double)w->A.at[p] - d * (1 - f_t) * L) / (tau + d);
-    w->m.at[p] = (cf_real)((double)w->m.at[p] - d * (A - f_t * L));
+    const conducted L = conducted_to(w, p);
+    const double A = (tau * (double)w->A.at[p] - d * (L.all - L.now)) / (tau + d);
+    w->m.at[p] = (cf_real)((double)w->m.at[p] - d * (A - L.now));
     w->A.at[p] = (cf_real)A;
   }
   END_CELLS
@@ -249,7 +300,7 @@ static cf_status stage(cf_poro *w, const double t, const double d, cf_solve_repo
   const double tau = w->p.tau;
   cf_solve_report one;
   cf_poro_add_rates(w, t + d, d);
-  make_right_side(w, tau > 0 ? tau * d / (tau + d) : 0, w->stage_beta);
+  make_right_side(w, tau > 0 ? tau * d / (tau + d) : 0);
   CF_TRY(cf_helmholtz_solve(w->solver, w->b, &w->p.solver, w->S, &one));
   finish_stage(w, d);
   report->iterations += one.iterations;
@@ -290,13 +341,14 @@ static double gained_by_nodes(const cf_poro *w) {
   return cf_tiles_sum_rows(w->tiles, w->rows);
 }
 
-/* The length of the stages of a step, and what follows from it. */
+/* The length of the stages of a step, and what follows from it: beta = d^2/(tau + d) kappa + d tau/(tau + d) kappa_F. */
 static cf_status set_stage(cf_poro *w, const double d) {
   const double tau = w->p.tau, h2 = w->grid->h * w->grid->h;
-  w->stage_beta = d * (d + w->p.f_t * tau) / (tau + d);
-  w->scale = w->stage_beta * h2;
+  w->slow = d * d / (tau + d);
+  w->fast = d * tau / (tau + d);
+  w->scale = d * (d + w->p.f_t * tau) / (tau + d) * h2;
   cf_poro_set_faces(w);
-  make_alpha(w, w->stage_beta);
+  make_alpha(w);
   return cf_helmholtz_set(
       w->solver, &(cf_coefficients){.alpha_at = &w->alpha, .beta_at = &w->beta, .region = w->region});
 }

@@ -17,7 +17,14 @@
  * surface, not in the cell (Gibou et al. 2002). Only cells within two of the outside are ever held, so a body that is
  * pulled thin does not become bath.
  *
- * The solve is the library's one solver on the cells that are free. Does not do: k that varies inside a body.
+ * Bodies may differ in k and F_T. Cells then have k and k F_T as means over the water that fits in, faces the harmonic
+ * means of both: what conducts at once and what conducts in the end are each as two bodies one behind the other are.
+ * Memory belongs to the part of L that is not F_T's, L - L_F, whose sum is 0 as well, so water is kept:
+ *
+ *     A <- [tau A - d (L - L_F) S~]/(tau + d),            m <- m - d (A - L_F S~)
+ *
+ * The solve is the library's one solver on the cells that are free. Does not do: tau that differs between bodies. A is the
+ * divergence of a flux, and sums to 0 for as long as all of it decays alike.
  */
 #ifndef CF_PHYSICS_PORO_H
 #define CF_PHYSICS_PORO_H
@@ -46,6 +53,8 @@ typedef struct cf_poro_source {
 
 typedef struct cf_poro_params {
   double k, tau, f_t;
+  const cf_lanes
+      *mixture; /* k and F_T vary: sums over particles of w c, w c k, w c k F_T, laid out as nodes->at are */
   bool two_stages; /* SDIRK2; one: backward Euler, as the paper */
   bool dense;      /* visits every cell of the lattice: the same bits, to compare with */
   cf_solve_options solver;
@@ -61,7 +70,10 @@ typedef struct cf_poro {
   cf_helmholtz *solver;
   cf_cell C, m, A, fill, S, b, alpha, value, m0, A0; /* value: where held */
   cf_face beta;                                      /* kappa times `scale`; 0 to held cells */
-  double stage_beta, scale;                          /* scale: stage_beta h^2 */
+  cf_cell k, k_now;                                  /* with a mixture: k, k F_T, */
+  cf_face kappa, kappa_now;                          /* kappa and its part of L_F */
+  double slow, fast;                                 /* of the stage: beta = slow kappa + fast kappa_F */
+  double scale;                                      /* without a mixture beta over kappa, times h^2 */
   unsigned char *kind, *wet;                         /* of a cell: see poro_part.h, poro_cells.c */
   double *rows;                                      /* partial sums, one a row of cells */
 } cf_poro;
@@ -76,8 +88,8 @@ cf_status cf_poro_step(cf_poro *w, cf_nodes *nodes, double t, double dt, double 
                        cf_solve_report *report);
 
 /* The weight of cf_mpm_filter's projection after a time: 1 - exp(-rate t) with the rate at which a wave as long as two
- * cells really decays (K = 4/h^2); 0 where k is 0. */
-double cf_poro_filter_rate(const cf_poro_params *p, double h);
+ * cells really decays (K = 4/h^2) where these are k and F_T; 0 where k is 0. */
+double cf_poro_filter_rate(double k, double tau, double f_t, double h);
 
 /* The distance in h from a plane surface of a body that fills the share theta of a node's spline; in [-1.5, 1.5]. */
 double cf_poro_distance(double theta);

@@ -109,9 +109,9 @@ cf_status cf_poro_find_cells(cf_poro *w, const double t) {
 
 /* --- faces ------------------------------------------------------------------------------------------------- */
 
-/* k c h^(d-2): what a face between two full cells conducts, c the water per volume of cell p. */
+/* c h^(d-2): what a face between two full cells with k = 1 conducts, c the water per volume of cell p. */
 static double full(const cf_poro *w, const ptrdiff_t p) {
-  return w->p.k * (double)w->C.at[p] / (double)w->fill.at[p] / (w->grid->h * w->grid->h);
+  return (double)w->C.at[p] / (double)w->fill.at[p] / (w->grid->h * w->grid->h);
 }
 
 double cf_poro_to_held(const cf_poro *w, const ptrdiff_t p, const ptrdiff_t q) {
@@ -143,18 +143,34 @@ static bool is_wet(const cf_poro *w, const ptrdiff_t p) {
   return w->wet[p + w->grid->box.first] >> w->grid->box.dim & 1;
 }
 
+/* The same for a face as it is. */
 static double between(const cf_poro *w, const ptrdiff_t p, const ptrdiff_t q) {
   if (is_wet(w, p) || is_wet(w, q)) return (full(w, p) + full(w, q)) / 2;
-  return w->p.k * ((double)w->C.at[p] + (double)w->C.at[q]) / (2 * w->grid->h * w->grid->h);
+  return ((double)w->C.at[p] + (double)w->C.at[q]) / (2 * w->grid->h * w->grid->h);
+}
+
+static double harmonic(const cf_cell k, const ptrdiff_t p, const ptrdiff_t q) {
+  const double a = (double)k.at[p], b = (double)k.at[q];
+  return a + b > 0 ? 2 * a * b / (a + b) : 0;
 }
 
 void cf_poro_set_faces(const cf_poro *w) {
   const cf_box *box = &w->grid->box;
+  const double h2 = w->grid->h * w->grid->h;
   find_wet(w);
   for (int a = 0; a < box->dim; ++a) FOR_CELLS(w, p) {
       const ptrdiff_t q = p - box->stride[a];
       const bool open = cf_poro_is_free(w, p) && cf_poro_is_free(w, q);
-      w->beta.at[a][p] = open ? (cf_real)(w->scale * between(w, p, q)) : (cf_real)0;
+      const double way = open ? between(w, p, q) : 0;
+      if (w->p.mixture == NULL) {
+        w->beta.at[a][p] = (cf_real)(w->scale * w->p.k * way);
+        continue;
+      }
+      const double kappa = open ? harmonic(w->k, p, q) * way : 0,
+                   now = open ? harmonic(w->k_now, p, q) * way : 0;
+      w->kappa.at[a][p] = (cf_real)kappa;
+      w->kappa_now.at[a][p] = (cf_real)now;
+      w->beta.at[a][p] = (cf_real)(h2 * (w->slow * kappa + w->fast * now));
     }
   END_CELLS
 }

@@ -31,10 +31,18 @@ static inline bool cf_poro_is_free(const cf_poro *w, const ptrdiff_t p) {
 /* The kind of every cell and the value of held ones, at time t. */
 cf_status cf_poro_find_cells(cf_poro *w, double t);
 
-/* beta on faces, for the stage that is set. */
+/* beta on faces, for the stage that is set; with a mixture kappa as well. */
 void cf_poro_set_faces(const cf_poro *w);
 
-/* What conducts between free cell p and held cell q. */
+/* k and k F_T of a cell. */
+static inline double cf_poro_k(const cf_poro *w, const ptrdiff_t p) {
+  return w->p.mixture != NULL ? (double)w->k.at[p] : w->p.k;
+}
+static inline double cf_poro_k_now(const cf_poro *w, const ptrdiff_t p) {
+  return w->p.mixture != NULL ? (double)w->k_now.at[p] : w->p.k * w->p.f_t;
+}
+
+/* What would conduct between free cell p and held cell q with k = 1. */
 double cf_poro_to_held(const cf_poro *w, ptrdiff_t p, ptrdiff_t q);
 
 /* Sources that add: m grows by what comes in a time d before t. */

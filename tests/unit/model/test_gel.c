@@ -115,9 +115,95 @@ static void dropped_gel_comes_to_rest_pressed_by_its_weight(void **state) {
   CLOSE(2 * fine - coarse, 1, 0.03);
 }
 
+/* --- bodies that differ ------------------------------------------------------------------------------------- */
+
+/* A ball beside a ball, 0.2 apart, of the given k and F_T; S of all particles at the end. */
+static int64_t two_balls(const char *first, const char *second, double *S) {
+  char text[1024];
+  scene_run r;
+  snprintf(
+      text, sizeof text,
+      "cattaneo: 1\nmodel: gel\ndomain: {size: [1.2, 0.6], cells: [60, 30]}\ntime: {end: 0.3, dt: 0.002}\n"
+      "diffusion: {k: 0.01, tau: 0.2, f_t: 0.2}\nsolver: {tolerance: 1e-11}\n"
+      "gel:\n  bodies:\n    - {shape: ball, center: [0.3, 0.3], radius: 0.2, saturation: \"y\", swelling: "
+      "5%s}\n"
+      "    - {shape: ball, center: [0.9, 0.3], radius: 0.2, saturation: \"y\", swelling: 5%s}\n"
+      "  water:\n    - {kind: bath, shape: plane, center: [0, 0.3]}\n",
+      first, second);
+  scene_open(&r, "balls", text, 1);
+  OK(cf_sim_run(r.sim, INFINITY, NULL, NULL));
+  saturations(&r, S);
+  const int64_t count = gel_of(&r)->set->count;
+  BELOW(fabs(scene_metric(&r, "error_water")), 1e-12);
+  assert_in_range(count, 500, SPINNING_MOST);
+  scene_close(&r);
+  return count;
+}
+
+/* Bodies with a k and an F_T of their own are each what they would be alone in a scene with these; the same numbers said
+ * twice change nothing. */
+static void bodies_apart_have_each_its_own_k(void **state) {
+  (void)state;
+  const int64_t n = two_balls("", "", still);
+  two_balls(", k: 0.01", ", k: 0.01, f_t: 0.2", spun);
+  for (int64_t i = 0; i < n; ++i) CLOSE(spun[i], still[i], 0);
+  two_balls(", k: 0.04, f_t: 1", ", k: 0.04, f_t: 1", begun);
+  two_balls("", ", k: 0.04, f_t: 1", spun);
+  double apart = 0;
+  for (int64_t i = 0; i < n; ++i) {
+    CLOSE(spun[i], i < n / 2 ? still[i] : begun[i], 1e-3); /* the filter comes at other times */
+    apart = fmax(apart, fabs(still[i] - begun[i]));
+  }
+  assert_true(apart > 0.1);
+}
+
+/* Two blocks side by side between wet ends, held at S = 1 and S = 0: the flow is that of two resistances one behind the
+ * other, whatever their F_T. In between they are one body, and water is kept. */
+static double between_blocks(const int cells, const double ratio) {
+  char text[1024];
+  scene_run r;
+  snprintf(text, sizeof text,
+           "cattaneo: 1\nmodel: gel\ndomain: {size: [1.5, 0.75], cells: [%d, %d]}\ntime: {end: 25, dt: 0.1}\n"
+           "diffusion: {k: 0.05, tau: 0.5}\n"
+           "gel:\n  bodies:\n    - {shape: box, center: [0.5, 0.375], half: [0.25, 0.125], swelling: 0, f_t: "
+           "0.5}\n"
+           "    - {shape: box, center: [1, 0.375], half: [0.25, 0.125], swelling: 0, k: %.17g, f_t: 0}\n"
+           "  water:\n    - {kind: held, shape: box, center: [0, 0], half: [0.35, 1]}\n"
+           "    - {kind: held, shape: box, center: [1.5, 0], half: [0.35, 1], value: 0}\n",
+           cells, cells / 2, 0.05 * ratio);
+  scene_open(&r, "blocks", text, 1);
+  while (!cf_sim_finished(r.sim)) {
+    OK(cf_sim_step(r.sim, NULL));
+    BELOW(fabs(scene_metric(&r, "error_water")), 1e-11);
+  }
+  saturations(&r, still);
+  const cf_gel *g = gel_of(&r);
+  double sum = 0;
+  int count = 0;
+  for (int64_t i = 0; i < g->set->count; ++i) {
+    const double x = (double)g->set->attribute[g->at.position].at[0][i];
+    if (fabs(x - 0.75) > 0.5 * g->lattice.h) continue;
+    sum += still[g->set->id[i]];
+    ++count;
+  }
+  scene_close(&r);
+  return sum / count;
+}
+
+static void blocks_in_contact_conduct_one_behind_the_other(void **state) {
+  (void)state;
+  const double ratio = 0.2, exact = 1 / (1 + ratio);
+  const double coarse = between_blocks(30, ratio), fine = between_blocks(60, ratio);
+  print_message("S between: %.4f, %.4f, should be %.4f\n", coarse, fine, exact);
+  BELOW(fabs(fine - exact), 0.02);
+  BELOW(fabs(fine - exact), 0.7 * fabs(coarse - exact));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(saturation_of_a_spinning_gel_is_that_of_one_at_rest),
+      cmocka_unit_test(bodies_apart_have_each_its_own_k),
+      cmocka_unit_test(blocks_in_contact_conduct_one_behind_the_other),
       cmocka_unit_test(dropped_gel_comes_to_rest_pressed_by_its_weight),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -288,7 +288,7 @@ static void threads_do_not_change_a_bit(void **state) {
     g[t].grid.threads = 1 + 2 * t;
     set_moving(&g[t]);
     for (int s = 0; s < 5; ++s) gel_step(&g[t], 0, 2e-3);
-    cf_mpm_filter(g[t].mpm, 0.3);
+    cf_mpm_filter(g[t].mpm, &(double){0.3});
   }
   for (int a = 0; a < g[0].set->attributes; ++a)
     for (int c = 0; c < g[0].set->attribute[a].components; ++c)

@@ -118,9 +118,9 @@ static void dry_gel_in_a_bath_swells_to_the_closed_form(void **state) {
     const double dt = 0.4 / 24 / sqrt(60);
     for (int s = 0; s < 900; ++s) {
       wet_step(&c, s * dt, dt);
-      due += dt * cf_poro_filter_rate(&p, 1.0 / 24);
+      due += dt * cf_poro_filter_rate(p.k, p.tau, p.f_t, 1.0 / 24);
       if (due > 0.02) {
-        cf_mpm_filter(c.gel.mpm, -expm1(-due));
+        cf_mpm_filter(c.gel.mpm, &(double){-expm1(-due)});
         due = 0;
       }
     }
@@ -159,7 +159,7 @@ static void run_dense_and_sparse(const int dim, const int more) {
     make_block(&c[i], dim, 32, more, &soft, &p, 0);
     for (int64_t v = 0; v < c[i].gel.set->count; ++v) gel_at(&c[i].gel, c[i].gel.at.velocity, 0)[v] = 2;
     for (int s = 0; s < 12; ++s) wet_step(&c[i], 0, 2e-3); /* through more than a cell */
-    cf_mpm_filter(c[i].gel.mpm, 0.2);
+    cf_mpm_filter(c[i].gel.mpm, &(double){0.2});
   }
   assert_same_bits(&c[0].gel, &c[1].gel);
   assert_true(c[0].gained == c[1].gained && c[0].gained > 0);
@@ -186,7 +186,7 @@ static void larger_lattice_changes_nothing(void **state) {
   for (int i = 0; i < 2; ++i) {
     make_block(&c[i], 2, 32, i * 96, &soft, &p, 0);
     for (int s = 0; s < 6; ++s) wet_step(&c[i], 0, 2e-3);
-    cf_mpm_filter(c[i].gel.mpm, 0.2);
+    cf_mpm_filter(c[i].gel.mpm, &(double){0.2});
   }
   for (int64_t i = 0; i < c[0].gel.set->count; ++i) {
     assert_int_equal(c[0].gel.set->id[i], c[1].gel.set->id[i]);
@@ -202,7 +202,7 @@ static void filter_keeps_water_and_what_the_grid_sees(void **state) {
   make_block(&c, 2, 32, 0, &soft, &(cf_poro_params){.k = 1, .tau = 1, .solver = {1e-6, 100}}, 0);
   fill_with_water(&c);
   const cf_mpm_sums before = cf_mpm_sums_of(c.gel.mpm);
-  for (int s = 0; s < 50; ++s) cf_mpm_filter(c.gel.mpm, 0.5);
+  for (int s = 0; s < 50; ++s) cf_mpm_filter(c.gel.mpm, &(double){0.5});
   const cf_mpm_sums after = cf_mpm_sums_of(c.gel.mpm);
   CLOSE(after.water / before.water, 1, 1e-13);
   assert_true(after.saturation_max - after.saturation_min <
