@@ -18,7 +18,7 @@
 #define FIXED_ROOM  256 /* the other lines */
 #define HEAD_LEAST  512
 #define HEAD_MOST   ((size_t)1 << 24)
-#define BUFFER_SIZE ((size_t)1 << 20)
+#define BUFFER_SIZE ((size_t)1 << 16)
 
 cf_status cf_head_create(cf_head *head, const int arrays) {
   *head = (cf_head){.size = HEAD_LEAST, .room = arrays};

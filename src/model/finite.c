@@ -118,8 +118,9 @@ static cf_status check_particles(const cf_sim *sim, const cf_particles *set) {
   if (cf_particles_finite(set, sim->grid.threads, &at)) return CF_OK;
   for (int a = 0; a < set->dim; ++a) x[a] = (double)set->attribute[CF_PARTICLE_POSITION].at[a][at.index];
   snprintf(f.what, sizeof f.what, "%s of %s", set->attribute[at.attribute].name, set->name);
-  snprintf(f.place, sizeof f.place, " at the particle of id %" PRId64 ", at (%.4g, %.4g, %.4g) m",
-           set->id[at.index], x[0], x[1], x[2]);
+  const int n = snprintf(f.place, sizeof f.place, " at the particle of id %" PRId64, set->id[at.index]);
+  if (isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]))
+    snprintf(f.place + n, sizeof f.place - (size_t)n, ", at (%.4g, %.4g, %.4g) m", x[0], x[1], x[2]);
   const cf_real *values = set->attribute[at.attribute].at[at.component];
   for (int64_t i = 0; i < set->count; ++i) {
     const double size = fabs((double)values[i]);

@@ -104,7 +104,8 @@ static cf_status check_window(const cf_scene *scene) {
     const char name[3] = {"xyz"[a], '+', '\0'};
     if (strcmp(follow, name) != 0) continue;
     if (scene->domain.walls.walls.kind[a][0] == CF_WALL_PERIODIC)
-      return cf_scene_fail_at(scene, "phase.window.follow", "phase.window.follow: %s is periodic", name);
+      return cf_scene_fail_at(scene, "phase.window.follow",
+                              "phase.window.follow: no wall to follow, %s is periodic", name);
     return CF_OK;
   }
   return cf_scene_fail_at(scene, "phase.window.follow", "phase.window.follow: \"%.20s\" is not x+, y+%s",
@@ -150,7 +151,7 @@ cf_status cf_crystal_resolve(cf_scene *scene) {
   CF_TRY(check_anisotropy(scene));
   CF_TRY(check_maps(scene));
   if (p->form == CF_SCENE_PHASE_PAPER && p->scheme == CF_SCENE_PHASE_IMPLICIT)
-    return cf_scene_fail_at(scene, "phase.scheme", "phase.scheme: the paper's form has explicit steps only");
+    return cf_scene_fail_at(scene, "phase.scheme", "phase.scheme: phase.form: paper has explicit steps only");
   if (!p->noise.given.period) {
     const double tau = cf_fn_at(&p->tau_eta.fn, 0, 0, 0, 0);
     p->noise.period = tau > 0 ? 5 * tau : scene->time.end / 1000;

@@ -16,6 +16,7 @@
 
 enum { KEY_MAX = 160, FRAMES_MAX = 999999 };
 #define CELLS_MAX 0x1p40
+#define STEPS_MAX 1e12
 
 /* --- axes ------------------------------------------------------------------------------------- */
 
@@ -71,6 +72,9 @@ static cf_status resolve_domain(cf_scene *scene) {
 }
 
 static cf_status check_time(const cf_scene *scene) {
+  const double steps = scene->time.end / scene->time.dt; /* NaN: chosen by the model */
+  if (steps > STEPS_MAX)
+    return cf_scene_fail_at(scene, "time.dt", "time.dt: %.3g steps in all, at most %.3g", steps, STEPS_MAX);
   const double frames = scene->time.end * scene->time.frames;
   if (frames > FRAMES_MAX)
     return cf_scene_fail_at(scene, "time.frames", "time.frames: %.3g frames in all, at most %d", frames,

@@ -102,7 +102,12 @@ static cf_status make_velocity(cf_tracer *m) {
   if (!moves) return CF_OK;
   CF_TRY(cf_face_create(&m->u, &m->scalars.grid->box));
   CF_TRY(cf_scalars_carry(&m->scalars, -1));
-  return set_velocity(m, 0);
+  const cf_status status = set_velocity(m, 0);
+  if (status != CF_NOT_FINITE) return status;
+  char why[CF_SENTENCE_MAX];
+  snprintf(why, sizeof why, "%s", cf_status_sentence());
+  return cf_scene_fail_at(scene, "velocity", "%s: is there a division by 0, or a root of a negative number?",
+                          why);
 }
 
 static cf_status register_velocity(const cf_tracer *m, cf_registry *r) {

@@ -53,8 +53,10 @@ static cf_status sample_positive(const cf_diffuse *d, const cf_fn *f, const char
   CF_TRY(cf_grid_sample(d->grid, f, CF_CENTRES, 0, out.at));
   int where[3];
   if (!cf_sweep_finite(&d->grid->box, 1, out.at, where))
-    return cf_fail(CF_BAD_ARGUMENT, "%s is not finite in cell (%d, %d, %d)", what, where[0], where[1],
-                   where[2]);
+    return cf_fail(
+        CF_BAD_ARGUMENT,
+        "%s is not finite in cell (%d, %d, %d): is there a division by 0, or a root of a negative number?",
+        what, where[0], where[1], where[2]);
   const cf_box *b = &d->grid->box;
   for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
     for (int i = 0; i < b->n[0]; ++i) {

@@ -49,19 +49,21 @@ static void tell_warnings(cf_session *s) {
 
 /* A failure in mid-run names what is left to go on from, and how. */
 static cf_status explain_failure(cf_session *s, const cf_status status) {
-  char why[CF_SENTENCE_MAX], left[CF_PATH_MAX + 64];
-  const bool mendable = status == CF_NOT_FINITE || status == CF_NOT_CONVERGED;
+  char why[CF_SENTENCE_MAX], left[CF_PATH_MAX + 64], next[CF_PATH_MAX + 64] = "";
+  const bool retries = status == CF_NOT_FINITE || status == CF_NOT_CONVERGED;
   snprintf(why, sizeof why, "%s", cf_status_sentence());
   if (s->last_checkpoint >= 0)
     snprintf(left, sizeof left, "last good checkpoint: %.300s/checkpoint_%06lld.h5", s->folder.path.text,
              (long long)s->last_checkpoint);
   else
     snprintf(left, sizeof left, "there is no checkpoint yet");
-  cf_fail(status, "%.640s; %s%s", why, left,
-          !mendable                   ? "; when that is mended: cattaneo resume"
-          : s->scene->time.retry == 0 ? "; time.retry makes a run go back by itself and take smaller steps"
-          : s->scene->time.retry <= s->sim->retries ? "; time.retry is used up"
-                                                    : "");
+  if (retries && s->scene->time.retry == 0)
+    snprintf(next, sizeof next, "; time.retry makes a run go back by itself and take smaller steps");
+  else if (retries && s->scene->time.retry <= s->sim->retries)
+    snprintf(next, sizeof next, "; time.retry is used up");
+  else if (status == CF_CANNOT_WRITE || status == CF_NO_MEMORY)
+    snprintf(next, sizeof next, "; when that is mended: cattaneo resume %.300s", s->folder.path.text);
+  cf_fail(status, "%.640s; %s%s", why, left, next);
   (void)cf_folder_log(&s->folder, "error: %s", cf_status_sentence());
   return status;
 }

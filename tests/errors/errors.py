@@ -7,7 +7,8 @@
         and what the program answers, to read
 
 An error is a call of cf_fail, cf_scene_fail_at, cf_config_fail or cf_config_fail_at with its format. All scenes of tests/golden and the
-command lines in cases.txt are given to the program (a line that begins with ! is one of the shell), and the tests of
+command lines in cases.txt are given to the program (a line that begins with ! is one of the shell, with the program as
+$CATTANEO), and the tests of
 the floors run; what was never said must stand in elsewhere.txt with its reason: what only a failing machine provokes.
 A new error without a case fails the test, and so does a line of elsewhere.txt that is no error.
 """
@@ -64,7 +65,8 @@ def pattern(written):
 
 
 def provoke(witness, tests, seen, tell):
-    environment = {**os.environ, "ERRORS_SEEN": seen, "GOMP_SPINCOUNT": "1000", "OMP_WAIT_POLICY": "passive"}
+    environment = {**os.environ, "ERRORS_SEEN": seen, "GOMP_SPINCOUNT": "1000", "OMP_WAIT_POLICY": "passive",
+                   "CATTANEO": witness}
 
     def call(words, folder):
         done = subprocess.run(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,

@@ -19,6 +19,7 @@
 #include "io/expr.h"
 #include "io/image.h"
 #include "io/mesh.h"
+#include "io/npy.h"
 #include "model/atlas.h"
 #include "model/scene.h"
 #include "session/space.h"
@@ -138,6 +139,15 @@ static void image(const uint8_t *bytes, const size_t size) {
   pixels = NULL;
   judge(cf_image_read_cover(path, &width, &height, &pixels));
   cf_free(pixels);
+  unlink(path);
+}
+
+static void npy(const uint8_t *bytes, const size_t size) {
+  int axes, n[3];
+  float *values = NULL;
+  const char *path = file_of(bytes, size, ".npy");
+  judge(cf_npy_read(path, &axes, n, &values));
+  cf_free(values);
   unlink(path);
 }
 

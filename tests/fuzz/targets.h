@@ -8,7 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define TARGETS(T) T(scene) T(override) T(expression) T(unit) T(checkpoint) T(ply) T(obj) T(image) T(atlas)
+#define TARGETS(T) \
+  T(scene) T(override) T(expression) T(unit) T(checkpoint) T(ply) T(obj) T(image) T(npy) T(atlas)
 
 typedef struct target {
   const char *name;
