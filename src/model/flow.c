@@ -167,6 +167,7 @@ static cf_status flow_step(void *model, const double t, const double dt, cf_step
   CF_TRY(cf_flow_place(m, t, dt));
   cf_flow_hold(m, m->u);
   CF_TRY(find_middle(m, dt));
+  CF_TRY(cf_scalars_follow(&m->scalars, dt));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
   if (!sticky) CF_TRY(push_half(m, t, dt));
   clock = cf_stage_end(report, CF_STAGE_FORCE, clock);
@@ -200,8 +201,8 @@ static bool flow_describe(const void *model, const int line, char *text, const s
   return cf_scalars_describe(&((const cf_flow *)model)->scalars, line, text, size);
 }
 
-static const char *const flow_keys[] = {"flow",    "diffusion", "advection", "fields", "velocity",
-                                        "sources", "points",    "obstacles", NULL};
+static const char *const flow_keys[] = {"flow",    "diffusion", "advection", "fields",    "velocity",
+                                        "sources", "sparse",    "points",    "obstacles", NULL};
 
 const cf_model cf_model_flow = {
     .name = "flow",

@@ -61,13 +61,21 @@ static cf_flux_rate rate_of(const cf_scalar *i) {
   return i->scene->flux_rate == CF_SCENE_FLUX_RATE_CONSERVATIVE ? CF_RATE_CONSERVATIVE : CF_RATE_OBJECTIVE;
 }
 
-static cf_status move_one(cf_advect *a, cf_scalar *i) {
+/* In a part of the box 0 comes in through what is no wall of the box. */
+static cf_status move_cell(const cf_scalars *s, cf_advect *a, const cf_walls *walls, const cf_cell f,
+                           cf_through *through) {
+  if (!s->follows) return cf_advect_cell(a, walls, f, through);
+  const cf_walls ends = cf_scalars_ends(s, walls, CF_WALL_OPEN);
+  return cf_advect_cell_in(a, &s->part, s->corner, &ends, f, through);
+}
+
+static cf_status move_one(const cf_scalars *s, cf_advect *a, cf_scalar *i) {
   cf_through through = {0, 0};
-  CF_TRY(cf_advect_cell(a, &i->carried, i->phi, &through));
+  CF_TRY(move_cell(s, a, &i->carried, i->phi, &through));
   i->ledger.entered += through.entered;
   i->ledger.left += through.left;
   if (!i->has_memory) return CF_OK;
-  if (i->plan.scalar_form) return cf_advect_cell(a, &i->carried_flux, i->s, NULL);
+  if (i->plan.scalar_form) return move_cell(s, a, &i->carried_flux, i->s, NULL);
   if (i->scene->flux_rate == CF_SCENE_FLUX_RATE_PARTIAL) return CF_OK; /* Appendix A's pitfall */
   return cf_advect_face(a, &i->walls, rate_of(i), i->q);
 }
@@ -80,17 +88,19 @@ cf_status cf_scalars_move(cf_scalars *s, const bool paper, const double t, const
     const cf_advect_scheme scheme = scheme_of(s, one);
     if (!begun[scheme]) CF_TRY(cf_advect_begin(s->by_scheme[scheme], t, dt));
     begun[scheme] = true;
-    CF_TRY(move_one(s->by_scheme[scheme], one));
+    CF_TRY(move_one(s, s->by_scheme[scheme], one));
   }
   return CF_OK;
 }
 
 /* --- diffusion -------------------------------------------------------------------------------------------- */
 
-static cf_status diffuse_one(cf_scalar *i, const double t, const double dt, cf_step_report *report) {
+static cf_status diffuse_one(const cf_scalars *s, cf_scalar *i, const double t, const double dt,
+                             cf_step_report *report) {
   cf_solve_report one;
   if (i->plan.scalar_form) {
-    CF_TRY(cf_diffuse_step_scalar(i->diffuse, t, dt, i->phi, i->s, &i->ledger, &one));
+    const cf_cell phi = {i->phi.at + s->corner}, div_q = {i->s.at + s->corner};
+    CF_TRY(cf_diffuse_step_scalar(i->diffuse, t, dt, phi, div_q, &i->ledger, &one));
   } else {
     CF_TRY(cf_diffuse_step(i->diffuse, t, dt, i->phi, i->q, &i->ledger, &one));
     cf_sources_hold_flux(i->sources, t + dt, i->q);
@@ -100,7 +110,8 @@ static cf_status diffuse_one(cf_scalar *i, const double t, const double dt, cf_s
 }
 
 cf_status cf_scalars_diffuse(cf_scalars *s, const double t, const double dt, cf_step_report *report) {
-  for (int i = 0; i < s->count; ++i) CF_TRY(diffuse_one(&s->item[i], t, dt, report));
+  for (int i = 0; i < s->count; ++i) CF_TRY(diffuse_one(s, &s->item[i], t, dt, report));
+  cf_scalars_clear_ghosts(s);
   return CF_OK;
 }
 
@@ -143,11 +154,13 @@ int cf_scalars_metric_names(const cf_scalars *s, cf_metric *names) {
 void cf_scalars_metrics(const cf_scalars *s, double *values) {
   for (int i = 0; i < s->count; ++i) {
     const cf_scalar *one = &s->item[i];
-    const cf_range range = cf_sweep_range(&s->grid->box, s->grid->threads, one->phi.at, s->rows);
+    cf_range range = cf_sweep_range(&s->part.box, s->grid->threads, one->phi.at + s->corner, s->rows);
+    if (cf_scalars_share(s) < 1) range.min = CF_MIN(range.min, 0), range.max = CF_MAX(range.max, 0);
     double *v = values + CF_SCALAR_METRICS * i;
     v[0] = range.sum * cf_grid_volume(s->grid);
     v[1] = range.min;
     v[2] = range.max;
-    v[3] = cf_ledger_error(&one->ledger, cf_diffuse_content(one->diffuse, one->phi));
+    v[3] =
+        cf_ledger_error(&one->ledger, cf_diffuse_content(one->diffuse, (cf_cell){one->phi.at + s->corner}));
   }
 }

@@ -43,6 +43,9 @@ typedef struct cf_scalar {
 typedef struct cf_scalars {
   const cf_scene *scene;
   const cf_grid *grid;
+  cf_grid part;     /* where they are computed: all of the grid, or a part of it with the same strides */
+  ptrdiff_t corner; /* that part's first cell, in the whole */
+  bool follows;     /* the part follows them (scalars_part.c) */
   int count;
   cf_scalar *item;
   bool moves;
@@ -77,6 +80,13 @@ double cf_scalars_natural_dt(const cf_scalars *s, double flow_rate);
 /* Moves the scalars that are (not) the paper's over [t, t + dt]. `begun` says which schemes have begun this step. */
 cf_status cf_scalars_move(cf_scalars *s, bool paper, double t, double dt, bool begun[CF_ADVECT_SCHEMES]);
 
+/* Before anything else in a step of dt: the part of the box that it will be computed in, if that follows the scalars; what
+ * is cut off is booked as having left. CF_NO_MEMORY. */
+cf_status cf_scalars_follow(cf_scalars *s, double dt);
+
+/* The share of the box that is computed. */
+double cf_scalars_share(const cf_scalars *s);
+
 /* Diffusion and sources of all of them over [t, t + dt]. */
 cf_status cf_scalars_diffuse(cf_scalars *s, double t, double dt, cf_step_report *report);
 
@@ -87,6 +97,18 @@ void cf_scalars_metrics(const cf_scalars *s, double *values);
 
 /* Fields of the box that they will need at most, in elements a cell, advection's scratch included. */
 double cf_scalars_memory(const cf_scene *scene);
+
+/* Zero again where diffusion has written ghosts beside the part. */
+void cf_scalars_clear_ghosts(const cf_scalars *s);
+
+/* The walls of a field for the part that is computed: its own where the part ends at the box, `inside` elsewhere. */
+cf_walls cf_scalars_ends(const cf_scalars *s, const cf_walls *walls, cf_wall inside);
+
+/* For scalars_part.c: diffusion and sources of one scalar on s->part, afresh. */
+cf_status cf_scalars_make_diffuse(const cf_scalars *s, cf_scalar *one);
+
+/* Whether scalars may be computed in a part of the box; CF_BAD_SCENE: asked for, but something speaks against it. */
+cf_status cf_scalars_may_follow(const cf_scalars *s, bool *may);
 
 /* Bytes of so many fields, and what a run needs besides. */
 double cf_scalars_bytes(const cf_scene *scene, double fields);

@@ -105,7 +105,7 @@ static void describe_scalar(const cf_scalars *m, const int field, cf_scalar *s) 
   s->has_memory = s->scene->tau > 0;
 }
 
-static cf_status make_diffuse(const cf_scalars *m, cf_scalar *s) {
+cf_status cf_scalars_make_diffuse(const cf_scalars *m, cf_scalar *s) {
   const cf_scene *scene = m->scene;
   const cf_scene_diffusion *d = s->scene;
   const cf_diffuse_params p = {
@@ -120,8 +120,10 @@ static cf_status make_diffuse(const cf_scalars *m, cf_scalar *s) {
       .positive = s->plan.positive,
   };
   cf_source acts;
-  CF_TRY(cf_sources_create(&s->sources, scene, m->grid, s->field, s->flux, &acts));
-  const cf_status made = cf_diffuse_create(&s->diffuse, m->grid, &s->walls, &p, &acts);
+  const cf_walls walls = cf_scalars_ends(m, &s->walls, CF_WALL_INSULATED);
+  CF_TRY(cf_sources_create(&s->sources, scene, &m->part, s->field, s->flux, &acts));
+  const cf_status made = cf_diffuse_create(&s->diffuse, &m->part, &walls, &p, &acts);
+  if (made == CF_OK && s->passes && s->plan.scalar_form) cf_diffuse_let_through(s->diffuse);
   if (made != CF_BAD_ARGUMENT) return made;
   /* The sentence begins with the name of the parameter, which is that of its key. */
   char why[CF_SENTENCE_MAX], key[3 * CF_NAME_MAX];
@@ -150,8 +152,7 @@ static cf_status make_scalar(const cf_scalars *m, cf_scalar *s, cf_registry *r) 
     CF_TRY(cf_cell_create(&s->s, &m->grid->box));
   else
     CF_TRY(cf_face_create(&s->q, &m->grid->box));
-  CF_TRY(make_diffuse(m, s));
-  if (s->passes && s->plan.scalar_form) cf_diffuse_let_through(s->diffuse);
+  CF_TRY(cf_scalars_make_diffuse(m, s));
   CF_TRY(cf_grid_sample(m->grid, &f->initial.axis[0].fn, CF_CENTRES, 0, s->phi.at));
   if (!s->plan.scalar_form) CF_TRY(initial_flux(m, s));
   s->ledger.first = cf_diffuse_content(s->diffuse, s->phi);
@@ -163,6 +164,7 @@ static cf_status make_scalar(const cf_scalars *m, cf_scalar *s, cf_registry *r) 
 cf_status cf_scalars_create(cf_scalars *s, const cf_scene *scene, const cf_grid *g) {
   s->scene = scene;
   s->grid = g;
+  s->part = *g;
   CF_TRY(CF_NEW(&s->rows, 3 * cf_box_rows(&g->box)));
   CF_TRY(CF_NEW(&s->item, CF_MAX(1, scene->fields.count)));
   for (int f = 0; f < scene->fields.count; ++f) {
@@ -191,7 +193,7 @@ void cf_scalars_open(cf_scalars *s, const int axis, const int side) {
 cf_status cf_scalars_make(cf_scalars *s, const double dt, cf_registry *r) {
   make_plans(s, dt);
   for (int i = 0; i < s->count; ++i) CF_TRY(make_scalar(s, &s->item[i], r));
-  return CF_OK;
+  return cf_scalars_may_follow(s, &s->follows);
 }
 
 void cf_scalars_destroy(cf_scalars *s) {

@@ -46,6 +46,9 @@ CF_PARAM_TABLE(cf_scene_vdb, CF_VDB_TABLE)
 #define CF_PARAM_STRUCT cf_scene_output
 CF_PARAM_TABLE(cf_scene_output, CF_OUTPUT_TABLE)
 #undef CF_PARAM_STRUCT
+#define CF_PARAM_STRUCT cf_scene_sparse
+CF_PARAM_TABLE(cf_scene_sparse, CF_SPARSE_TABLE)
+#undef CF_PARAM_STRUCT
 #define CF_PARAM_STRUCT cf_scene_points
 CF_PARAM_TABLE(cf_scene_points, CF_POINTS_TABLE)
 #undef CF_PARAM_STRUCT

@@ -28,6 +28,7 @@
 #include "model/points_keys.h"
 #include "model/render_keys.h"
 #include "model/snowfall_keys.h"
+#include "model/sparse_keys.h"
 
 /* --- words: W(UPPER, as a scene writes it) ---------------------------------------------------- */
 
@@ -244,6 +245,7 @@ enum { /* bits of output.formats: 1u << CF_SCENE_FORMAT_PNG */
     "The fields by name: scalars, and q or q_NAME for a flux; left out: one scalar phi")                    \
   P(velocity, functions, "0", "m/s", "",                                                                    \
     "The flow, one expression in x, y, z, t an axis, evaluated at the faces; in model flow that at time 0") \
+  R(record, sparse, cf_scene_sparse, "Computing scalars only where they are")                               \
   R(list, sources, cf_scene_source, "What is added to fields, or holds them")                               \
   R(list, obstacles, cf_scene_obstacle, "Solid bodies: what nothing passes, or what holds scalars")         \
   R(list, points, cf_scene_points, "Points that the flow carries along")                                    \

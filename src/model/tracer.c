@@ -247,6 +247,7 @@ static cf_status move(cf_tracer *m, const bool paper, const double t, const doub
 static cf_status tracer_step(void *model, const double t, const double dt, cf_step_report *report) {
   cf_tracer *m = model;
   double clock = cf_stage_clock();
+  CF_TRY(cf_scalars_follow(&m->scalars, dt));
   CF_TRY(move(m, true, t, dt, t, report));
   CF_TRY(move(m, false, t, dt / 2, t + dt / 4, report));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
@@ -290,7 +291,7 @@ static double tracer_memory(const cf_scene *scene) {
 }
 
 static const char *const tracer_keys[] = {"diffusion", "advection", "fields", "velocity",
-                                          "sources",   "points",    NULL};
+                                          "sources",   "sparse",    "points", NULL};
 
 static cf_status tracer_check(const cf_scene *scene, const double dt, const cf_page *page) {
   (void)dt;

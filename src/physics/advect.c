@@ -280,6 +280,18 @@ cf_status cf_advect_cell(cf_advect *a, const cf_walls *walls, const cf_cell phi,
   return CF_OK;
 }
 
+cf_status cf_advect_cell_in(cf_advect *a, const cf_grid *part, const ptrdiff_t corner, const cf_walls *walls,
+                            const cf_cell phi, cf_through *through) {
+  const cf_grid *whole = a->grid;
+  const cf_face u = a->u;
+  a->grid = a->walls.grid = part;
+  for (int axis = 0; axis < part->box.dim; ++axis) a->u.at[axis] = u.at[axis] + corner;
+  const cf_status s = cf_advect_cell(a, walls, (cf_cell){phi.at + corner}, through);
+  a->grid = a->walls.grid = whole;
+  a->u = u;
+  return s;
+}
+
 /* --- faces -------------------------------------------------------------------------------------------- */
 
 static cf_ghost ghost_of_faces(const cf_wall kind, const bool own_axis) {

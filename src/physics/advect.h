@@ -11,6 +11,11 @@
 #include "grid/flow_walls.h"
 #include "grid/grid.h"
 
+/* cf_advect_cell in a part of the box alone: `part` is a grid with the strides of the whole one whose cell (0, 0, 0) is
+ * `corner` elements further; the velocity stays that of the whole box. phi is a field of the whole box. */
+cf_status cf_advect_cell_in(cf_advect *a, const cf_grid *part, ptrdiff_t corner, const cf_walls *walls,
+                            cf_cell phi, cf_through *through);
+
 /* u_t + div(v u) = 0, component by component on the volumes around their faces, over the step begun; v is the
  * velocity that was set, and u another field. The normal velocity of closed walls must be put right afterwards
  * (cf_flow_walls_hold). The sum of every component changes by what passes walls alone (CF_ADVECT_PPM, _WENO5). */
