@@ -74,7 +74,9 @@ static cf_status make_equations(cf_flow *m) {
   const cf_scene_flow *f = &m->scene->flow;
   const cf_solve_options o = solver_of(m->scene);
   const int levels = (int)m->scene->solver.levels;
-  CF_TRY(cf_project_create(&m->project, &m->walls, &o, levels));
+  /* Nobody wants the velocity in the middle of the step when it is projected, but for points. */
+  CF_TRY(
+      cf_project_create(&m->project, &m->walls, &o, levels, m->scene->points.count > 0 ? NULL : &m->middle));
   CF_TRY(make_lift(m));
   CF_TRY(make_given(m));
   if (f->confinement > 0) CF_TRY(cf_confine_create(&m->confine, &m->walls, f->confinement));

@@ -153,9 +153,10 @@ bool cf_flow_shows(const cf_scene *scene, const char *name) {
 
 double cf_flow_memory(const cf_scene *scene) {
   const double dim = scene->dim, coarse = dim == 3 ? 8.0 / 7 : 4.0 / 3;
-  double fields = 3 * dim + 1; /* velocity three times, pressure */
-  fields += 2 + 2 * coarse * 4 /
-                    sizeof(cf_real); /* the projection: right side, change, levels in single precision */
+  double fields = 3 * dim + 1;                /* velocity three times, pressure */
+  fields += 2 * coarse * 4 / sizeof(cf_real); /* the projection's levels in single precision */
+  if (scene->points.count > 0) fields += 2;   /* its right side and change, else the velocity's */
+  if (scene->obstacles.count > 0) fields += 4 + 2 * coarse;
   if (scene->flow.given.force) fields += dim;
   if (scene->flow.confinement > 0) fields += dim + 1;
   if (scene->flow.viscosity > 0) fields += 2 + dim * (8 + 8 * coarse);

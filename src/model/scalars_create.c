@@ -10,30 +10,76 @@
 #include "grid/sweep.h"
 #include "grid/wall.h"
 #include "model/scalars.h"
+#include "stencil/regime.h"
 
 /* --- memory ----------------------------------------------------------------------------------------------- */
 
-static bool has_source(const cf_scene *scene, const bool held) {
+/* What a scheme takes at once: 8/7 of a field in space for all levels of multigrid. */
+static double levels_of(const cf_scene *scene) { return scene->dim == 3 ? 8.0 / 7 : 4.0 / 3; }
+
+/* Whether a source of the kind acts on a field. */
+static bool has_source(const cf_scene *scene, const char *name, const bool held) {
   for (int i = 0; i < scene->sources.count; ++i)
-    if (scene->sources.item[i].given.value == held) return true;
+    if (strcmp(scene->sources.item[i].field, name) == 0 && scene->sources.item[i].given.value == held)
+      return true;
   return false;
 }
 
+static bool radiates(const cf_scene *scene, const cf_walls *walls) {
+  for (int a = 0; a < scene->dim; ++a)
+    if (walls->kind[a][0] == CF_WALL_RADIATE || walls->kind[a][1] == CF_WALL_RADIATE) return true;
+  return false;
+}
+
+/* Fields of one scalar under a plan: state, what diffusion takes (cf_diffuse_create), and its solver. */
+static double fields_under(const cf_scene *scene, const int field, const cf_plan *plan) {
+  const cf_scene_field *f = &scene->fields.item[field];
+  const cf_scene_diffusion *d = &f->diffusion;
+  const double dim = scene->dim, in_single = 4.0 / sizeof(cf_real);
+  char flux[CF_NAME_MAX];
+  cf_plan_flux_name(scene, field, flux);
+  const bool k_varies = !cf_fn_is_constant(&d->k.fn), held = has_source(scene, f->name, true);
+  const bool c_varies = !cf_fn_is_constant(&d->capacity.fn) || d->capacity.fn.value != 1;
+  const bool follows_fourier = plan->scheme == CF_DIFFUSE_LEAPFROG && d->f_t > 0;
+  const bool implicit = plan->scheme == CF_DIFFUSE_PAPER || plan->scheme == CF_DIFFUSE_SDIRK2 ||
+                        (follows_fourier && !plan->positive);
+  const bool beta =
+      (implicit && (k_varies || radiates(scene, &f->walls.walls))) || (plan->positive && d->f_t > 0);
+  double fields = 1 + (plan->scalar_form ? 1 : dim) + 2;
+  if (has_source(scene, f->name, false)) fields += 1;
+  if (has_source(scene, flux, false)) fields += dim;
+  if (held) fields += 4;
+  fields += (k_varies ? dim : 0) + (c_varies ? 1 : 0) + (beta ? dim : 0) + (plan->front_filter ? 1 : 0);
+  if (plan->scheme == CF_DIFFUSE_WAVE) fields += 2 + dim;
+  if (!implicit) return fields;
+  const bool varied = beta || held || c_varies || scene->obstacles.count > 0;
+  return fields + (varied ? 4 + (dim + 3) * levels_of(scene) : 2 * levels_of(scene) * in_single);
+}
+
+/* The same before any grid is there: with the step that diffusion alone would ask for, or with the dearest scheme. */
+static double fields_of(const cf_scene *scene, const int field, bool *on_faces) {
+  const cf_scene_diffusion *d = &scene->fields.item[field].diffusion;
+  const bool known = cf_fn_is_constant(&d->k.fn) && cf_fn_is_constant(&d->capacity.fn);
+  const double D = known && d->capacity.fn.value > 0 ? d->k.fn.value / d->capacity.fn.value : 0;
+  const double c = d->tau > 0 ? cf_regime_speed(D, d->tau, d->f_t) : 0, h = scene->spacing;
+  const double own = c > 0 ? scene->time.cfl * h / c : scene->time.end / 100;
+  const double dt = isnan(scene->time.dt) ? CF_MIN(own, scene->time.end / 100) : scene->time.dt;
+  cf_plan plan;
+  cf_plan_make(scene, field, D, cf_plan_step(scene, dt), &plan);
+  *on_faces = *on_faces || (!plan.scalar_form && d->tau > 0);
+  const double fields = fields_under(scene, field, &plan);
+  if (known) return fields;
+  plan.scheme = CF_DIFFUSE_SDIRK2;
+  return CF_MAX(fields, fields_under(scene, field, &plan));
+}
+
 double cf_scalars_memory(const cf_scene *scene) {
-  const double dim = scene->dim, coarse = dim == 3 ? 1.0 / 7 : 1.0 / 3;
-  double fields = dim + 4; /* advection's scratch */
-  for (int f = 0; f < scene->fields.count; ++f) {
-    const cf_scene_field *field = &scene->fields.item[f];
-    if (cf_scene_name_is_flux(field->name)) continue;
-    const bool varies =
-        !cf_fn_is_constant(&field->diffusion.k.fn) || field->diffusion.capacity.fn.eval != NULL;
-    fields += 1 + dim;            /* phi, q */
-    fields += 2 + 5 + 3 * coarse; /* phi~ and right side; the solver's vectors; coarse levels */
-    if (varies) fields += 2 * dim + 2 + (dim + 1) * coarse;
-    if (has_source(scene, false)) fields += 1 + dim;
-    if (has_source(scene, true)) fields += 3 + (dim + 1) * (1 + coarse);
-  }
-  return fields;
+  bool on_faces = false;
+  double fields = 1; /* advection's scratch */
+  for (int f = 0; f < scene->fields.count; ++f)
+    if (!cf_scene_name_is_flux(scene->fields.item[f].name)) fields += fields_of(scene, f, &on_faces);
+  if (scene->advection.scheme == CF_SCENE_ADVECTION_WENO5) fields += 1;
+  return on_faces ? fields + scene->dim : fields;
 }
 
 double cf_scalars_bytes(const cf_scene *scene, const double fields) {

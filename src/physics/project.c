@@ -21,30 +21,37 @@ struct cf_project {
   cf_wall_values outside; /* of the pressure: 0 on open walls */
   cf_region *region;      /* of the fluid; NULL: everywhere */
   cf_helmholtz *A;
-  cf_cell change, b;
+  cf_cell change, b; /* components of `spare`, or its own: */
+  bool owns;
   double *rows; /* 2 a row */
 };
 
-static cf_status make(cf_project *p, const int levels) {
+static cf_status make(cf_project *p, const int levels, const cf_face *spare) {
   const cf_box *b = &p->grid->box;
   const cf_walls walls = cf_flow_walls_of_pressure(p->walls);
   CF_TRY(cf_wall_values_create(&p->outside, p->grid, &walls));
   CF_TRY(cf_helmholtz_create(&p->A, p->grid, &walls, levels));
   CF_TRY(cf_helmholtz_set(p->A, &(cf_coefficients){.alpha = 0, .beta = 1}));
-  CF_TRY(cf_cell_create(&p->change, b));
-  CF_TRY(cf_cell_create(&p->b, b));
+  p->owns = spare == NULL;
+  if (p->owns) {
+    CF_TRY(cf_cell_create(&p->change, b));
+    CF_TRY(cf_cell_create(&p->b, b));
+  } else {
+    p->change.at = spare->at[0];
+    p->b.at = spare->at[1];
+  }
   return CF_NEW(&p->rows, 2 * cf_box_rows(b));
 }
 
 cf_status cf_project_create(cf_project **project, const cf_flow_walls *walls, const cf_solve_options *o,
-                            const int levels) {
+                            const int levels, const cf_face *spare) {
   *project = NULL;
   cf_project *p;
   CF_TRY(CF_NEW(&p, 1));
   p->grid = walls->grid;
   p->walls = walls;
   p->solver = *o;
-  const cf_status s = make(p, levels);
+  const cf_status s = make(p, levels, spare);
   if (s != CF_OK) {
     cf_project_destroy(p);
     return s;
@@ -57,8 +64,10 @@ void cf_project_destroy(cf_project *p) {
   if (p == NULL) return;
   cf_helmholtz_destroy(p->A);
   cf_wall_values_destroy(&p->outside);
-  cf_cell_destroy(&p->change, &p->grid->box);
-  cf_cell_destroy(&p->b, &p->grid->box);
+  if (p->owns) {
+    cf_cell_destroy(&p->change, &p->grid->box);
+    cf_cell_destroy(&p->b, &p->grid->box);
+  }
   cf_free(p->rows);
   cf_free(p);
 }

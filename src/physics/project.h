@@ -21,9 +21,10 @@
 
 typedef struct cf_project cf_project;
 
-/* `walls` must outlive it. levels: of multigrid, 0: as needed. CF_NO_MEMORY. */
-cf_status cf_project_create(cf_project **p, const cf_flow_walls *walls, const cf_solve_options *o,
-                            int levels);
+/* `walls` must outlive it. levels: of multigrid, 0: as needed. spare: a field that it may scribble over during a step, so
+ * that it needs none of its own; NULL: there is none. CF_NO_MEMORY. */
+cf_status cf_project_create(cf_project **p, const cf_flow_walls *walls, const cf_solve_options *o, int levels,
+                            const cf_face *spare);
 void cf_project_destroy(cf_project *p); /* NULL is fine */
 
 /* From now on the fluid is in the cells inside this region (NULL: everywhere); others are solid and walls in it. Their
