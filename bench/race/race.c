@@ -63,7 +63,7 @@ static void enter(heat *h, const race_solver *solver, const cf_bench_case *c) {
   h->entry[h->entries++] = (entry){.solver = solver, .c = *c};
 }
 
-static double cells_of(const entry *e) { return (double)e->c.n[0] * e->c.n[1] * e->c.n[2]; }
+static double cells_of(const entry *e) { return (double)e->system.cells; }
 
 static void print_entry(const heat *h, const int rounds, const int v) {
   const entry *e = &h->entry[v];
@@ -75,6 +75,8 @@ static void print_entry(const heat *h, const int rounds, const int v) {
   char sigma[24] = "Poisson", box[48];
   if (isfinite(e->c.sigma)) snprintf(sigma, sizeof sigma, "%g", e->c.sigma);
   snprintf(box, sizeof box, e->c.dim == 3 ? "%dx%dx%d" : "%dx%d", e->c.n[0], e->c.n[1], e->c.n[2]);
+  if (e->c.region != NULL)
+    snprintf(box, sizeof box, "%d %s%s", e->c.n[0], e->c.region, e->c.set_up ? " + set" : "");
   const double median = cf_bench_median(seconds, rounds), middle = cf_bench_median(ratio, rounds);
   printf("%-18s%-15s%-5s%-8s%8s%7.0e%4d%11.3f%9.2f%5d%10.1e", e->solver->name, box, e->c.walls,
          cf_bench_side_name[e->c.side], sigma, e->c.tolerance, e->c.threads, 1e3 * median,
@@ -203,6 +205,38 @@ static cf_status race_walls(const options *o, const cf_bench_case *c) {
   return CF_OK;
 }
 
+/* Around obstacles over an empty box, a cell that has an equation: alone, and with setting up (D7). */
+static cf_status race_obstacles(const options *o, const cf_bench_case *c) {
+  static const char *const regions[] = {"ball", "slalom", "porous"};
+  for (int v = 0; v < 3; ++v) {
+    cf_bench_case around = *c;
+    heat h = {0};
+    around.region = regions[v];
+    enter(&h, &race_ours, &around);
+    enter(&h, &race_ours, c);
+    around.set_up = true;
+    enter(&h, &race_ours, &around);
+    CF_TRY(run(&h, o->rounds));
+  }
+  return CF_OK;
+}
+
+/* A ball of 2 % of a box of twice the extents, on tiles, over a box of about as many cells. */
+static cf_status race_sparse(const options *o, const cf_bench_case *c) {
+  cf_bench_case drop = *c, box = *c;
+  heat h = {0};
+  for (int a = 0; a < c->dim; ++a) {
+    drop.n[a] *= 2;
+    box.n[a] = (int)lround(drop.n[a] * pow(0.02, 1.0 / c->dim));
+  }
+  drop.region = "drop";
+  enter(&h, &race_ours, &drop);
+  enter(&h, &race_ours, &box);
+  drop.set_up = true;
+  enter(&h, &race_ours, &drop);
+  return run(&h, o->rounds);
+}
+
 /* Two dimensions against direct solvers. */
 static cf_status race_square(const options *o, const cf_bench_case *c) {
   for (int n = 256; n <= 4096; n *= 2) {
@@ -224,7 +258,8 @@ static const struct {
 } races[] = {
     {"direct", race_direct}, {"general", race_general}, {"tolerance", race_tolerance},
     {"size", race_size},     {"threads", race_threads}, {"uneven", race_uneven},
-    {"walls", race_walls},   {"square", race_square},
+    {"walls", race_walls},   {"square", race_square},   {"obstacles", race_obstacles},
+    {"sparse", race_sparse},
 };
 enum { RACES = sizeof races / sizeof *races };
 

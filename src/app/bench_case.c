@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "app/bench_region.h"
 #include "base/mem.h"
 #include "base/rng.h"
 #include "grid/sweep.h"
@@ -107,6 +108,13 @@ double cf_bench_resident(void) {
   return (double)resident * (double)sysconf(_SC_PAGESIZE);
 }
 
+static cf_status set_coefficients(const cf_bench_system *s, const cf_bench_case *c) {
+  const bool poisson = isinf(c->sigma);
+  return cf_helmholtz_set(
+      s->A,
+      &(cf_coefficients){.alpha = poisson ? 0 : 1, .beta = poisson ? 1 : c->sigma, .region = s->region});
+}
+
 static cf_status system_make(cf_bench_system *s, const cf_bench_case *c) {
   CF_TRY(cf_grid_init(&s->grid, c->dim, c->n, 1, NULL));
   s->grid.threads = c->threads;
@@ -114,11 +122,15 @@ static cf_status system_make(cf_bench_system *s, const cf_bench_case *c) {
   CF_TRY(cf_bench_fill_side(c, &s->grid, s->b));
   if (wants_no_mean(c)) CF_TRY(remove_mean(&s->grid, s->b));
   s->resident = cf_bench_resident();
-  CF_TRY(cf_cell_create(&s->x, &s->grid.box));
   const cf_walls walls = walls_of(c);
   CF_TRY(cf_helmholtz_create(&s->A, &s->grid, &walls, 0));
-  const bool poisson = isinf(c->sigma);
-  return cf_helmholtz_set(s->A, &(cf_coefficients){.alpha = poisson ? 0 : 1, .beta = poisson ? 1 : c->sigma});
+  s->cells = cf_box_cells(&s->grid.box);
+  if (c->region != NULL) {
+    CF_TRY(cf_bench_region_create(c->region, &s->grid, &s->region, &s->tiles));
+    s->cells = cf_region_inside(s->region);
+  }
+  CF_TRY(s->tiles != NULL ? cf_tiles_cell_create(s->tiles, &s->x) : cf_cell_create(&s->x, &s->grid.box));
+  return set_coefficients(s, c);
 }
 
 cf_status cf_bench_system_create(cf_bench_system *s, const cf_bench_case *c) {
@@ -130,6 +142,8 @@ cf_status cf_bench_system_create(cf_bench_system *s, const cf_bench_case *c) {
 
 void cf_bench_system_destroy(cf_bench_system *s) {
   cf_helmholtz_destroy(s->A);
+  cf_region_destroy(s->region);
+  cf_tiles_destroy(s->tiles);
   cf_cell_destroy(&s->x, &s->grid.box);
   cf_cell_destroy(&s->b, &s->grid.box);
   *s = (cf_bench_system){0};
@@ -137,12 +151,25 @@ void cf_bench_system_destroy(cf_bench_system *s) {
 
 /* --- timing ----------------------------------------------------------------------------------------------- */
 
+static void clear_tiles(const cf_bench_system *s) {
+  const cf_tiles *t = s->tiles;
+  for (ptrdiff_t v = 0; v < t->rows; ++v)
+    CF_TILE_ROWS (t, v, j, k)
+      CF_TILE_RUNS (t, v, run)
+        memset(s->x.at + cf_box_at(&t->box, run->low, j, k), 0,
+               (size_t)(run->high - run->low) * sizeof(cf_real));
+}
+
 cf_status cf_bench_system_solve(const cf_bench_system *s, const cf_bench_case *c, cf_solve_report *report,
                                 double *seconds) {
   const cf_box *box = &s->grid.box;
-  CF_PARALLEL_ROWS (box, s->grid.threads, r)
-    memset(s->x.at + cf_box_row(box, r), 0, (size_t)box->n[0] * sizeof(cf_real));
+  if (s->tiles != NULL)
+    clear_tiles(s);
+  else
+    CF_PARALLEL_ROWS (box, s->grid.threads, r)
+      memset(s->x.at + cf_box_row(box, r), 0, (size_t)box->n[0] * sizeof(cf_real));
   const double begun = cf_bench_clock(c->own_time);
+  if (c->set_up) CF_TRY(set_coefficients(s, c));
   CF_TRY(cf_helmholtz_solve(s->A, s->b, &(cf_solve_options){c->tolerance, 200}, s->x, report));
   *seconds = cf_bench_clock(c->own_time) - begun;
   return CF_OK;
@@ -153,7 +180,7 @@ static cf_status time_solves(const cf_bench_system *s, const cf_bench_case *c, c
                              const double enough, cf_bench_result *result) {
   double seconds[TIMES_MAX], sum = 0, first;
   CF_TRY(cf_bench_system_solve(s, c, &result->report, &first));
-  result->bytes_per_cell = (cf_bench_resident() - s->resident) / (double)cf_box_cells(&s->grid.box);
+  result->bytes_per_cell = (cf_bench_resident() - s->resident) / (double)s->cells;
   while (result->times < TIMES_MAX && (result->times < least || sum < enough)) {
     CF_TRY(cf_bench_system_solve(s, c, &result->report, &seconds[result->times]));
     sum += seconds[result->times++];

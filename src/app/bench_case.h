@@ -10,6 +10,7 @@
 #ifndef CF_APP_BENCH_CASE_H
 #define CF_APP_BENCH_CASE_H
 
+#include "grid/region.h"
 #include "solve/helmholtz.h"
 
 typedef enum cf_bench_side { CF_BENCH_MIXED, CF_BENCH_SMOOTH, CF_BENCH_NOISY, CF_BENCH_SIDES } cf_bench_side;
@@ -23,6 +24,8 @@ typedef struct cf_bench_case {
   int threads;
   const char *walls; /* a letter an axis: i insulated, o open, p periodic; NULL: all insulated */
   cf_bench_side side;
+  const char *region; /* of bench_region.h; NULL: the whole box */
+  bool set_up;        /* the coefficients are set anew before every solve, and that is timed too */
   bool
       own_time; /* seconds are those of the calling thread alone: for one thread where others want the machine */
 } cf_bench_case;
@@ -30,7 +33,10 @@ typedef struct cf_bench_case {
 typedef struct cf_bench_system {
   cf_grid grid;
   cf_helmholtz *A;
+  cf_region *region;
+  cf_tiles *tiles;
   cf_cell x, b;
+  ptrdiff_t cells; /* that have an equation */
   double resident; /* bytes that this process held when only b was there */
 } cf_bench_system;
 

@@ -20,6 +20,8 @@
 /* A pass of half sweeps alone gains at most this, and has at most so many of them. */
 #define PASS_GAIN   1e-7
 #define PASS_SWEEPS 32
+/* A step is at least this, and at most its inverse. */
+#define LEAST_STEP 0.4
 
 /* --- passes ------------------------------------------------------------------------------------------- */
 
@@ -77,7 +79,10 @@ static int half_sweeps_for(const double jacobi, const double gain) {
 }
 
 static cf_pass pass_on(const cf_box_solver *f, const int l) {
-  return (cf_pass){.at = &f->level[l], .coarse = l + 1 < f->depth ? &f->level[l + 1] : NULL};
+  const bool last = l + 1 >= f->depth, around = f->varied != NULL;
+  return (cf_pass){.at = &f->level[l],
+                   .coarse = last || around ? NULL : &f->level[l + 1],
+                   .below = last || !around ? NULL : &f->varied->level[l + 1]};
 }
 
 static cf_pass pass_on_finest(const cf_box_solver *f, const cf_cell b, const cf_cell x) {
@@ -112,6 +117,14 @@ static void solve_coarsest(const cf_box_solver *f) {
       for (int i = 0; i < s->n[0]; ++i)
         s->e[j * s->row + k * s->plane + cf_split_at(s, i)] =
             (float)plain.x.at[cf_box_at(&plain.box, i, j, k)];
+}
+
+/* The same below segments. */
+static void correct_around(const cf_box_solver *f) {
+  cf_box_gather_odds(f);
+  cf_varied_cycle(f->varied, 1);
+  cf_coupled_wrap(&f->varied->level[1], f->varied->level[1].e);
+  cf_box_spread_odds(f);
 }
 
 /* e from r on level l, whose first half sweep is done. */
@@ -159,10 +172,20 @@ static void take_form_sums(const cf_box_solver *f, cf_box_iteration *it) {
   it->start = it->rr;
 }
 
+/* How much of the next correction to take: what would have been best this time, with which the method is that of Barzilai
+ * and Borwein (1988). With A e for what the cycle made of r:  step = r . A e / A e . A e. */
+static void choose_step(const cf_box_solver *f, const double before, cf_box_iteration *it) {
+  const double product = (sum_of(f, CF_SUM_BLACK) + sum_of(f, CF_SUM_RED)) * it->scale * it->scale;
+  const double change = before - 2 * product + it->rr;
+  if (change > 0)
+    it->step = CF_MAX(LEAST_STEP, CF_MIN(it->step * (before - product) / change, 1 / LEAST_STEP));
+}
+
 /* The last step of every pass that corrects x. */
 static void run_update(const cf_box_solver *f, cf_pass *p, cf_box_iteration *it) {
   const double before = it->rr;
-  p->gain = it->scale / f->scale;
+  p->step = it->step;
+  p->gain = it->step * it->scale / f->scale;
   p->lift = it->lift;
   p->sums_of_x = f->singular;
   cf_wave_run(&f->wave, p);
@@ -170,6 +193,7 @@ static void run_update(const cf_box_solver *f, cf_pass *p, cf_box_iteration *it)
   it->lift = 0;
   it->rr = sum_of(f, CF_SUM_RESIDUAL) * it->scale * it->scale;
   it->rate = sqrt(it->rr / before);
+  if (f->varied != NULL && f->depth > 1) choose_step(f, before, it);
   if (!p->sums_of_x) return;
   it->x_sum = sum_of(f, CF_SUM_X);
   it->xx = sum_of(f, CF_SUM_X2);
@@ -177,7 +201,10 @@ static void run_update(const cf_box_solver *f, cf_pass *p, cf_box_iteration *it)
 
 void cf_box_form(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b, const cf_cell x,
                  cf_box_iteration *it) {
-  cf_halo_fill(&A->grid.box, &A->outside, 1, -1, x.at);
+  if (f->varied != NULL)
+    cf_varied_set_ghosts(f->varied, x);
+  else
+    cf_halo_fill(&A->grid.box, &A->outside, 1, -1, x.at);
   cf_pass p = pass_on_finest(f, b, x);
   p.scale = it->scale;
   p.shift = it->shift;
@@ -196,8 +223,12 @@ void cf_box_cycle(const cf_box_solver *f, const cf_cell b, const cf_cell x, cons
     push_first_part(f, &first);
     cf_wave_run(&f->wave, &first);
   }
-  correct(f, 1);
-  cf_split_fill_seams(p.coarse, p.coarse->e);
+  if (f->varied != NULL) {
+    correct_around(f);
+  } else {
+    correct(f, 1);
+    cf_split_fill_seams(p.coarse, p.coarse->e);
+  }
   push(&p, CF_PASS_PROLONG, 0);
   push(&p, CF_PASS_RED, 0);
   push_end(&p, 0, 0);

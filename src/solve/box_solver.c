@@ -10,17 +10,17 @@
 #include "solve/box_part.h"
 #include "solve/pcg.h"
 
-/* Over-relaxation of the finest level over that of the others. */
-#define FINEST_OVER 0.85
-/* Up to this stiffness half sweeps alone are fewer operations, and fewer passes over memory, than cycles with coarse
- * levels: 32 of them, in one pass, do what 5 or 6 cycles do. */
-#define SWEEPS_ENOUGH 10
 /* The polynomials' bound holds for the error; a pass aims so much below what is asked of the residual, since a second
  * pass costs more than a half sweep. */
 #define PASS_MARGIN 0.25
 /* What rounding leaves of the residual that a recursion started from; a new start is due well before. */
 #define RECURSION_FLOOR 5e-7
 #define RECURSION_TURN  2e-5
+/* In a region, where differences are not exact at edges, so much of the tolerance is left to what the recursion does not
+ * see. */
+#define RECURSION_SLACK 0.01
+/* Near walls on the levels below: enough for the stationary iteration. */
+#define BAND_SWEEPS 1
 /* A cycle that leaves more than this of the residual, so many times in a row: not a case for this path. */
 #define SLOW       0.5
 #define SLOW_TIMES 3
@@ -40,6 +40,7 @@ void cf_box_solver_destroy(cf_box_solver *f) {
   if (f == NULL) return;
   for (int l = 0; l < f->levels; ++l) cf_split_destroy(&f->level[l]);
   cf_wave_destroy(&f->wave);
+  cf_segments_destroy(&f->segments);
   cf_direct_destroy(&f->direct);
   cf_free(f->line);
   cf_free(f->rows);
@@ -49,7 +50,7 @@ void cf_box_solver_destroy(cf_box_solver *f) {
 static cf_status levels_create(cf_box_solver *f, const cf_helmholtz *A) {
   for (int l = 0; l < A->levels; ++l) {
     f->levels = l + 1; /* counted first, so that a failure within frees it */
-    CF_TRY(cf_split_create(&f->level[l], &A->level[l]));
+    CF_TRY(cf_split_create(&f->level[l], &A->level[l], true));
   }
   const cf_split *finest = &f->level[0];
   CF_TRY(cf_wave_create(&f->wave, finest));
@@ -81,7 +82,7 @@ cf_level cf_box_coarsest(const cf_box_solver *f) {
 
 /* Levels to use: the finest alone where half sweeps do. */
 static int depth_for(const cf_helmholtz *A) {
-  return cf_level_stiffness(&A->level[0]) <= SWEEPS_ENOUGH ? 1 : A->depth;
+  return cf_level_stiffness(&A->level[0]) <= CF_BOX_SWEEPS_ENOUGH ? 1 : A->depth;
 }
 
 /* Whether single precision can do this at all, half sweeps of one colour are independent on the finest level, and
@@ -92,13 +93,13 @@ static bool is_suitable(const cf_box_solver *f, const cf_level *finest, const cf
   /* The direct solution takes cf_real. */
   if (sizeof(cf_real) == sizeof(float) && f->scale > 1e30) return false;
   return cf_level_is_solved_directly(coarsest) ||
-         cf_level_stiffness(coarsest) <= (f->depth == 1 ? SWEEPS_ENOUGH : CF_STIFF_ENOUGH);
+         cf_level_stiffness(coarsest) <= (f->depth == 1 ? CF_BOX_SWEEPS_ENOUGH : CF_STIFF_ENOUGH);
 }
 
 /* 1 + (share of diffusion in the diagonal)^2 / 5, a little less on the finest level, was best at 1e-6. */
 static void choose_omega(const cf_level *l, const bool finest, const bool half_sweeps_only, double omega[4]) {
   const double over = (double)cf_level_relaxation(l) - 1;
-  for (int v = 0; v < 4; ++v) omega[v] = half_sweeps_only ? 1 : 1 + (finest ? FINEST_OVER : 1) * over;
+  for (int v = 0; v < 4; ++v) omega[v] = half_sweeps_only ? 1 : 1 + (finest ? CF_BOX_FINEST_OVER : 1) * over;
 }
 
 bool cf_box_solver_set(cf_box_solver *f, const cf_helmholtz *A) {
@@ -149,7 +150,12 @@ static double sample_scale(const cf_box_solver *f, const cf_cell b, const cf_cel
   return largest;
 }
 
+static double cells_of(const cf_box_solver *f) {
+  return (double)(f->varied != NULL ? f->segments.cells : cf_box_cells(&f->level[0].plain->box));
+}
+
 static double scale_for(const cf_box_solver *f, const cf_level *l, const cf_cell b, const cf_cell x) {
+  if (f->varied != NULL) return near_power(cf_box_sample_around(f, b, x));
   double size = sample_scale(f, b, x);
   if (!(size > 1e-15 && size < 1e15))
     size = sqrt((cf_level_dot(l, b, b) + f->scale * f->scale * cf_level_dot(l, x, x)) /
@@ -224,21 +230,21 @@ static bool iterate(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell
     cf_box_sweeps(f, b, x, PASS_MARGIN * sqrt(enough / it->rr), it);
   /* x may be coarser than what r can tell: in single precision, or next to a large lift. */
   const double rounding = CF_REAL_EPSILON * f->scale * it->lifted;
-  const bool coarse = sizeof(cf_real) == sizeof(float) ||
-                      rounding * rounding * (double)cf_box_cells(&A->grid.box) > MEAN_SHARE * enough;
+  const bool coarse =
+      sizeof(cf_real) == sizeof(float) || rounding * rounding * cells_of(f) > MEAN_SHARE * enough;
   if (!(it->rr <= turn) || !(far || coarse)) return true;
   const double begun = it->start;
-  it->scale = near_power(sqrt(it->rr / (double)cf_box_cells(&A->grid.box)));
+  it->scale = near_power(sqrt(it->rr / cells_of(f)));
   it->shift = 0;
   cf_box_form(f, A, b, x, it);
   return it->rr <= SLOW * SLOW * begun && it->rr > floor_of(f, it);
 }
 
-cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, const cf_solve_options *o,
-                            const cf_cell x, cf_solve_report *report, bool *finished) {
-  cf_level *l = &A->level[0];
-  const double cells = (double)cf_box_cells(&l->box);
-  cf_box_iteration it = {.rate = 0.1};
+static cf_status run(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b,
+                     const cf_solve_options *o, const cf_cell x, cf_solve_report *report, bool *finished) {
+  const cf_level *l = &A->level[0];
+  const double cells = cells_of(f);
+  cf_box_iteration it = {.rate = 0.1, .step = 1};
   int slow = 0;
   report->levels = f->depth;
   it.scale = scale_for(f, l, b, x);
@@ -246,9 +252,13 @@ cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, 
   cf_box_form(f, A, b, x, &it);
   CF_TRY(check_sums(&it));
   balance(f, A, b, x, o->tolerance, &it);
-  const double mean = it.x_sum / cells, enough = o->tolerance * o->tolerance * it.bb;
+  const double asked = (f->varied != NULL ? 1 - RECURSION_SLACK : 1) * o->tolerance;
+  const double mean = it.x_sum / cells, enough = asked * asked * it.bb;
   if (it.bb == 0) {
-    cf_level_clear(l, x);
+    if (f->varied != NULL)
+      cf_varied_clear(f->varied, x);
+    else
+      cf_level_clear(l, x);
     if (f->singular) cf_level_shift(l, mean, x);
   }
   bool gains = it.bb > 0;
@@ -262,9 +272,26 @@ cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, 
     slow = it.rr > SLOW * SLOW * before ? slow + 1 : 0;
   }
   *finished = slow < SLOW_TIMES;
+  if (f->varied != NULL) /* conjugate gradients know better than to take rounding for the end */
+    *finished = it.bb == 0 || it.rr <= enough || report->iterations >= o->max_iterations;
   settle_mean(f, A, b, x, o->tolerance, &it);
   report->residual = it.bb > 0 ? sqrt(it.rr / it.bb) : 0;
   const double rounding = CF_MIN(floor_of(f, &it), ROUNDING_PASSES * it.bb);
   report->converged = it.bb == 0 || it.rr <= CF_MAX(enough, rounding);
+  return CF_OK;
+}
+
+cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, const cf_solve_options *o,
+                            const cf_cell x, cf_solve_report *report, bool *finished) {
+  if (f->varied == NULL) return run(f, A, b, o, x, report, finished);
+  const cf_pockets *pockets = &f->varied->pockets;
+  const cf_coupled *l = &f->varied->level[0];
+  report->pockets = pockets->count;
+  f->varied->careful = false;
+  f->varied->band_sweeps = BAND_SWEEPS;
+  cf_pockets_remove_means(pockets, l, b);
+  cf_pockets_keep_means(pockets, l, x);
+  CF_TRY(run(f, A, b, o, x, report, finished));
+  cf_pockets_restore_means(pockets, l, x);
   return CF_OK;
 }

@@ -19,6 +19,8 @@
 
 #include "solve/helmholtz.h"
 
+struct cf_varied;
+
 typedef struct cf_box_solver cf_box_solver;
 
 /* Memory for the levels of A: pages that stay untouched until used. CF_NO_MEMORY. */
@@ -27,6 +29,12 @@ void cf_box_solver_destroy(cf_box_solver *f); /* NULL is fine */
 
 /* Takes A's coefficients. False: this equation is not one for the fast path. */
 bool cf_box_solver_set(cf_box_solver *f, const cf_helmholtz *A);
+
+/* The same in the region that v has taken, for numbers alpha and beta: to be set after v. *taken is false where this is
+ * no case for it. CF_NO_MEMORY. */
+cf_status cf_box_solver_create_around(cf_box_solver **f, const cf_helmholtz *A, struct cf_varied *v);
+cf_status cf_box_solver_set_around(cf_box_solver *f, const cf_helmholtz *A, double alpha, double beta,
+                                   bool *taken);
 
 /* Solves; *finished = false: it went too slowly, and x, which has only become better, is left for another solver.
  * CF_NOT_FINITE. */

@@ -55,6 +55,7 @@ void cf_helmholtz_destroy(cf_helmholtz *A) {
   cf_free(A->line);
   cf_direct_destroy(&A->direct);
   cf_box_solver_destroy(A->box);
+  cf_box_solver_destroy(A->around);
   cf_free(A);
 }
 
@@ -193,6 +194,18 @@ static cf_status coarsest_create(cf_helmholtz *A) {
   return CF_OK;
 }
 
+/* Numbers in a region: the fast path, if it can. */
+static cf_status set_around(cf_helmholtz *A, const cf_coefficients *c) {
+  const bool tiles = c->region->tiles != NULL;
+  if (A->around != NULL && A->around_tiles != tiles) {
+    cf_box_solver_destroy(A->around);
+    A->around = NULL;
+  }
+  if (A->around == NULL) CF_TRY(cf_box_solver_create_around(&A->around, A, A->varied));
+  A->around_tiles = tiles;
+  return cf_box_solver_set_around(A->around, A, c->alpha, c->beta, &A->in_box);
+}
+
 cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
   if (!(c->alpha >= 0) || !(c->beta >= 0) || !isfinite(c->alpha) || !isfinite(c->beta))
     return cf_fail(CF_BAD_ARGUMENT, "alpha = %g, beta = %g: must be finite and not negative", c->alpha,
@@ -201,7 +214,8 @@ cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
   if (A->is_varied) {
     A->in_box = A->singular = false;
     if (A->varied == NULL) CF_TRY(cf_varied_create(&A->varied, A));
-    return cf_varied_set(A->varied, A, c);
+    CF_TRY(cf_varied_set(A->varied, A, c));
+    return c->region != NULL && c->alpha_at == NULL && c->beta_at == NULL ? set_around(A, c) : CF_OK;
   }
   CF_TRY(set_constant(A, c));
   A->has_held_wall = has_held_wall(A);

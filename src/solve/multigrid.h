@@ -22,18 +22,20 @@ struct cf_helmholtz {
   cf_level level[CF_LEVELS_MAX];
   cf_halo outside; /* what a caller's x must hold beyond the walls: the other side, or 0 */
   bool has_held_wall;
-  bool singular;             /* alpha = 0 and no held wall */
-  double beta;               /* where it is a number */
-  struct cf_box_solver *box; /* the fast path; NULL until coefficients are numbers */
-  bool in_box;               /* the present coefficients are a case for it */
-  struct cf_varied *varied;  /* coefficients that are fields, and regions; NULL until there are any */
-  bool is_varied;            /* the present coefficients are a case for it */
-  cf_cell r, p, Ap, z;       /* of conjugate gradients on the finest level */
-  cf_cell coarse[3];         /* the same on the coarsest */
-  int coarse_level;          /* for which `coarse` is shaped; -1: none yet */
-  cf_real *scratch;          /* rows for the transfers, one a thread */
-  cf_direct direct;          /* the coarsest level where it has few cells */
-  double *line;              /* work of the coarsest level where it is a line */
+  bool singular;                /* alpha = 0 and no held wall */
+  double beta;                  /* where it is a number */
+  struct cf_box_solver *box;    /* the fast path; NULL until coefficients are numbers */
+  bool in_box;                  /* the present coefficients are a case for it */
+  struct cf_varied *varied;     /* coefficients that are fields, and regions; NULL until there are any */
+  bool is_varied;               /* the present coefficients are a case for it */
+  struct cf_box_solver *around; /* numbers in a region: the fast path there, above levels of `varied` */
+  bool around_tiles;            /* it was made for tiles */
+  cf_cell r, p, Ap, z;          /* of conjugate gradients on the finest level */
+  cf_cell coarse[3];            /* the same on the coarsest */
+  int coarse_level;             /* for which `coarse` is shaped; -1: none yet */
+  cf_real *scratch;             /* rows for the transfers, one a thread */
+  cf_direct direct;             /* the coarsest level where it has few cells */
+  double *line;                 /* work of the coarsest level where it is a line */
 };
 
 /* z = one V-cycle on A z = r from z = 0. */

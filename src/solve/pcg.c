@@ -156,6 +156,7 @@ static cf_status solve_plain(cf_helmholtz *A, const cf_cell b, const cf_solve_op
 }
 
 const char *cf_helmholtz_method(const cf_helmholtz *A) {
+  if (A->is_varied && A->in_box) return cf_box_solver_method(A->around);
   if (A->is_varied) return cf_varied_depth(A->varied) == 1 ? "pcg" : "multigrid-pcg";
   if (cf_level_is_line(&A->level[0])) return "line";
   if (A->depth == 1 && cf_level_is_few(&A->level[0])) return "direct";
@@ -167,7 +168,7 @@ cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_op
   cf_level *l = &A->level[0];
   *report = (cf_solve_report){.levels = A->depth, .pockets = A->singular, .method = cf_helmholtz_method(A)};
   bool finished = false;
-  if (A->in_box) CF_TRY(cf_box_solver_run(A->box, A, b, o, x, report, &finished));
+  if (A->in_box) CF_TRY(cf_box_solver_run(A->is_varied ? A->around : A->box, A, b, o, x, report, &finished));
   if (finished) return CF_OK;
   if (A->in_box) report->method = "multigrid-pcg";
   if (A->is_varied) {

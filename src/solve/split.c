@@ -66,9 +66,9 @@ static cf_status tables_create(cf_split *s) {
   return CF_OK;
 }
 
-static cf_status pages_create(const cf_split *s, float **f) {
+static cf_status pages_create(const cf_split *s, const bool dense, float **f) {
   void *pages;
-  CF_TRY(cf_pages_reserve(&pages, (size_t)s->size * sizeof(float), true));
+  CF_TRY(cf_pages_reserve(&pages, (size_t)s->size * sizeof(float), dense));
   *f = (float *)pages + s->first;
   return CF_OK;
 }
@@ -77,12 +77,12 @@ static void pages_destroy(const cf_split *s, float *f) {
   if (f != NULL) cf_pages_release(f - s->first, (size_t)s->size * sizeof(float));
 }
 
-cf_status cf_split_create(cf_split *s, const cf_level *plain) {
+cf_status cf_split_create(cf_split *s, const cf_level *plain, const bool dense) {
   *s = (cf_split){0};
   shape(s, plain);
   CF_TRY(tables_create(s));
-  CF_TRY(pages_create(s, &s->e));
-  return pages_create(s, &s->r);
+  CF_TRY(pages_create(s, dense, &s->e));
+  return pages_create(s, dense, &s->r);
 }
 
 void cf_split_destroy(cf_split *s) {

@@ -33,14 +33,15 @@
 typedef struct cf_split {
   const cf_level *plain; /* the same level of the plain path: extents, pairings, halo rules */
   int dim, n[3], threads;
-  int half[2], width;    /* cells of the even and odd half; elements of either with padding */
-  ptrdiff_t odd;         /* from the even half of a row to its odd half */
-  ptrdiff_t row, plane;  /* strides */
-  ptrdiff_t first, size; /* elements before cell (0, 0, 0); of the array */
-  float *e, *r;          /* correction and residual, at cell (0, 0, 0) */
-  bool has_seam;         /* some axis is periodic */
-  bool odd_seam;         /* ... with an odd number of cells: neighbours across the seam share a colour */
-  bool even_couplings;   /* the same in all axes and places, but for walls */
+  int half[2], width;                 /* cells of the even and odd half; elements of either with padding */
+  ptrdiff_t odd;                      /* from the even half of a row to its odd half */
+  ptrdiff_t row, plane;               /* strides */
+  ptrdiff_t first, size;              /* elements before cell (0, 0, 0); of the array */
+  float *e, *r;                       /* correction and residual, at cell (0, 0, 0) */
+  const struct cf_segments *segments; /* NULL: the whole box */
+  bool has_seam;                      /* some axis is periodic */
+  bool odd_seam;       /* ... with an odd number of cells: neighbours across the seam share a colour */
+  bool even_couplings; /* the same in all axes and places, but for walls */
 
   float alpha, coupling;  /* scaled; coupling: in the middle of the box */
   float omega[4];         /* of the half sweeps before the coarse correction (red, black) and after it */
@@ -55,8 +56,8 @@ typedef struct cf_split {
       *away; /* of prolongation along x from the coarse cell of the same index and the one beyond: rows */
 } cf_split;
 
-/* Shapes the level and makes its tables; e and r are pages, 0 and untouched. CF_NO_MEMORY. */
-cf_status cf_split_create(cf_split *s, const cf_level *plain);
+/* Shapes the level and makes its tables; e and r are pages, 0 and untouched, large ones if `dense`. CF_NO_MEMORY. */
+cf_status cf_split_create(cf_split *s, const cf_level *plain, bool dense);
 void cf_split_destroy(cf_split *s); /* a zeroed one is fine */
 
 /* Coefficients alpha and beta over `scale`; omega of the half sweeps. */

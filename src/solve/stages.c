@@ -1,35 +1,55 @@
 /* SPDX-License-Identifier: MIT */
 #include "solve/stages_part.h"
 
-/* The omega of each half sweep of a cycle: one of its own, or the level's. */
-static float omega_of(const cf_pass *p, const int number, const int sweep) {
-  return p->omega[number] > 0 ? p->omega[number] : p->at->omega[sweep];
+/* Which half sweep of a cycle a stage is or contains. */
+static int sweep_of(const cf_pass_stage stage) {
+  switch (stage) {
+    case CF_PASS_SECOND:
+      return 1;
+    case CF_PASS_RED:
+      return 2;
+    case CF_PASS_BLACK:
+    case CF_PASS_LAST:
+      return 3;
+    default:
+      return 0;
+  }
+}
+
+/* One of its own, or the level's. */
+static float omega_of(const cf_pass *p, const int number) {
+  return p->omega[number] > 0 ? p->omega[number] : p->at->omega[sweep_of(p->stage[number])];
 }
 
 void cf_stage_run(const cf_pass *p, const int number, const cf_strip *t) {
   const cf_split *s = p->at;
+  const float omega = omega_of(p, number);
+  if (s->segments != NULL) {
+    cf_stage_on_segments(p, number, t, omega);
+    return;
+  }
   switch (p->stage[number]) {
     case CF_PASS_FORM:
       cf_stage_form(p, t);
-      cf_stage_first(s, t, omega_of(p, number, 0));
+      cf_stage_first(s, t, omega);
       break;
     case CF_PASS_FIRST:
-      cf_stage_first(s, t, omega_of(p, number, 0));
+      cf_stage_first(s, t, omega);
       break;
     case CF_PASS_SECOND:
-      cf_stage_second(s, t, omega_of(p, number, 1));
+      cf_stage_second(s, t, omega);
       break;
     case CF_PASS_RED:
-      cf_stage_relax(s, t, 0, omega_of(p, number, 2));
+      cf_stage_relax(s, t, 0, omega);
       break;
     case CF_PASS_BLACK:
-      cf_stage_relax(s, t, 1, omega_of(p, number, 3));
+      cf_stage_relax(s, t, 1, omega);
       break;
     case CF_PASS_LAST:
-      cf_stage_last(s, t, omega_of(p, number, 3));
+      cf_stage_last(s, t, omega);
       break;
     case CF_PASS_UPDATE:
-      cf_stage_update(p, t, omega_of(p, number, 0));
+      cf_stage_update(p, t, omega);
       break;
     case CF_PASS_RESTRICT:
       cf_stage_restrict(p, t);

@@ -52,11 +52,14 @@ typedef enum cf_pass_sum {
   CF_SUM_X,
   CF_SUM_B2,
   CF_SUM_B,
+  CF_SUM_BLACK, /* in a region UPDATE and LAST add up the products of r before and after, */
+  CF_SUM_RED,   /* for either colour */
   CF_PASS_SUMS
 } cf_pass_sum;
 
 typedef struct cf_pass {
-  const cf_split *at, *coarse; /* coarse: NULL on the coarsest level */
+  const cf_split *at, *coarse;    /* coarse: NULL on the coarsest level */
+  const struct cf_coupled *below; /* the coarse level of a level that has segments */
   int count;
   cf_pass_stage stage[CF_PASS_STAGES];
   float omega[CF_PASS_STAGES]; /* of the half sweep; 0: the level's */
@@ -68,6 +71,7 @@ typedef struct cf_pass {
   double shift;       /* FORM subtracts it from b - A x */
   double scale;       /* FORM divides by it */
   double gain, lift;  /* UPDATE: x += gain e + lift */
+  double step;        /* in a region LAST and UPDATE take so much of the correction; gain contains it */
   bool sums_of_x;     /* UPDATE adds up x and its squares as well */
   ptrdiff_t sums;     /* pieces of rows that the level has */
   double *rows;       /* `sums` numbers of each kind of cf_pass_sum */

@@ -16,6 +16,7 @@ typedef struct cf_half {
   float *e, *r;
   float *side;
   const float *lo, *hi, *inverse, *diagonal;
+  const unsigned char *faces, *held; /* on an edge segment (segments.h) */
   ptrdiff_t y, z;
   float lo_y, hi_y, lo_z, hi_z, alpha, coupling;
   int parity;
@@ -123,6 +124,8 @@ void cf_stage_form(const cf_pass *p, const cf_strip *t);
 void cf_stage_last(const cf_split *s, const cf_strip *t, float omega);
 void cf_stage_update(const cf_pass *p, const cf_strip *t, float omega);
 void cf_stage_residual(const cf_split *s, const cf_strip *t);
+
+void cf_stage_on_segments(const cf_pass *p, int number, const cf_strip *t, float omega);
 
 void cf_stage_restrict(const cf_pass *p, const cf_strip *t);
 void cf_stage_prolong(const cf_pass *p, const cf_strip *t);

@@ -10,9 +10,7 @@
 #include "grid/halo.h"
 #include "solve/varied_part.h"
 
-/* Sweeps over the band near walls before and after the coarse correction, and full sweeps after it below the finest
- * level, where they cost little. */
-#define BAND_SWEEPS   2
+/* Full sweeps after the coarse correction below the finest level, where they cost little. */
 #define COARSE_SWEEPS 3
 /* On a coarsest level that is not eliminated because little is left to smooth there. */
 #define LAST_SWEEPS 4
@@ -343,9 +341,9 @@ void cf_varied_cycle(const cf_varied *v, const int at) {
     return;
   }
   const float omega = v->careful ? 1 : OMEGA;
-  cf_coupled_smooth_first(l, omega, BAND_SWEEPS);
+  cf_coupled_smooth_first(l, omega, v->band_sweeps);
   cf_coupled_restrict(l, &v->level[at + 1]);
   cf_varied_cycle(v, at + 1);
   cf_coupled_prolong(&v->level[at + 1], l);
-  cf_coupled_smooth(l, omega, BAND_SWEEPS, at == 0 || v->careful ? 1 : COARSE_SWEEPS, v->careful ? 1 : 0);
+  cf_coupled_smooth(l, omega, v->band_sweeps, at == 0 || v->careful ? 1 : COARSE_SWEEPS, v->careful ? 1 : 0);
 }

@@ -20,6 +20,8 @@
 
 /* Beyond this many starts, or a start that gains less than half, rounding is all that is left. */
 #define STARTS_MOST 5
+/* Near walls, before and after the coarse correction. */
+#define BAND_SWEEPS 2
 /* So many iterations are far more than any equation should need: then the cycle becomes symmetric, with which conjugate
  * gradients cannot stall. */
 #define PATIENCE 40
@@ -138,15 +140,14 @@ static void keep_row(const cf_varied *v, const int j, const int k, const double 
   v->sums[cf_box_rows(b) + row] = cf_sum_lanes(second);
 }
 
-/* Ghosts beside visited cells: the other side of a seam, or 0. */
-static void set_ghosts(const cf_varied *v, cf_real *x) {
+void cf_varied_set_ghosts(const cf_varied *v, const cf_cell x) {
   const cf_coupled *l = &v->level[0];
   const cf_box *b = &l->box;
   for (ptrdiff_t r = 0; r < l->rows; ++r)
     CF_TILE_ROWS (l, r, j, k) {
       const int at[3] = {0, j, k};
       CF_TILE_RUNS (l, r, run) {
-        cf_real *row = x + cf_box_at(b, 0, j, k);
+        cf_real *row = x.at + cf_box_at(b, 0, j, k);
         if (run->low == 0) row[-1] = l->periodic[0] ? row[b->n[0] - 1] : 0;
         if (run->high == b->n[0]) row[b->n[0]] = l->periodic[0] ? row[0] : 0;
         for (int a = 1; a < b->dim; ++a)
@@ -162,7 +163,7 @@ static void set_ghosts(const cf_varied *v, cf_real *x) {
 /* r = b - A x; squares of r and b. */
 static pair form(const cf_varied *v, const cf_cell x, const cf_cell b) {
   const cf_coupled *l = &v->level[0];
-  set_ghosts(v, x.at);
+  cf_varied_set_ghosts(v, x);
   CF_PARALLEL_COUPLED (l, w)
     CF_TILE_ROWS (l, w, j, k) {
       double rr[CF_SUM_LANES] = {0}, bb[CF_SUM_LANES] = {0};
@@ -221,7 +222,7 @@ static void turn(const cf_varied *v, const double beta) {
 /* A p, with p . A p and p . r. */
 static pair probe(const cf_varied *v) {
   const cf_coupled *l = &v->level[0];
-  set_ghosts(v, v->p.at);
+  cf_varied_set_ghosts(v, v->p);
   CF_PARALLEL_COUPLED (l, w)
     CF_TILE_ROWS (l, w, j, k) {
       double pAp[CF_SUM_LANES] = {0}, pr[CF_SUM_LANES] = {0};
@@ -255,7 +256,7 @@ static double advance(const cf_varied *v, const double a, const double scale, co
   return add_up(v).first;
 }
 
-static void clear(const cf_varied *v, const cf_cell x) {
+void cf_varied_clear(const cf_varied *v, const cf_cell x) {
   const cf_coupled *l = &v->level[0];
   CF_PARALLEL_COUPLED (l, w)
     CF_TILE_ROWS (l, w, j, k)
@@ -306,11 +307,12 @@ cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options 
                    "the equation to solve holds a value that is not finite (|b| = %g, |b - A x| = %g)",
                    sqrt(s.second), sqrt(s.first));
   if (s.second == 0) {
-    clear(v, x);
+    cf_varied_clear(v, x);
     s.first = 0;
   }
   const double bb = s.second, enough = o->tolerance * o->tolerance * bb;
   v->careful = false;
+  v->band_sweeps = BAND_SWEEPS;
   for (int start = 0; start < STARTS_MOST && s.first > enough && report->iterations < o->max_iterations;
        ++start) {
     const double before = s.first;
@@ -331,7 +333,7 @@ cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options 
 
 void cf_varied_apply(cf_varied *v, const cf_cell x, const cf_cell y) {
   const cf_coupled *l = &v->level[0];
-  set_ghosts(v, x.at);
+  cf_varied_set_ghosts(v, x);
   CF_PARALLEL_COUPLED (l, w)
     CF_TILE_ROWS (l, w, j, k)
       CF_TILE_RUNS (l, w, run) operate_run(v, run, j, k, x.at, y.at);

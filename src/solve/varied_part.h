@@ -18,6 +18,7 @@ struct cf_varied {
   cf_coupled level[CF_LEVELS_MAX];
   int levels, depth; /* made; in use */
   bool careful;      /* the cycle is symmetric: slower, and never led astray */
+  int band_sweeps;   /* over the band near walls, before and after the coarse correction */
   cf_band band;
   cf_pockets pockets;
 
@@ -35,5 +36,11 @@ struct cf_varied {
 
 /* level[at].e = one V-cycle on level[at].r. */
 void cf_varied_cycle(const cf_varied *v, int at);
+
+/* Ghosts of x beside visited cells: the other side of a seam, or 0. */
+void cf_varied_set_ghosts(const cf_varied *v, cf_cell x);
+
+/* x = 0 on the cells inside. */
+void cf_varied_clear(const cf_varied *v, cf_cell x);
 
 #endif

@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "grid/sweep.h"
+#include "solve/segments.h"
 
 /* Elements of a half row that a column has in 2D. */
 #define COLUMN 256
@@ -41,6 +42,17 @@ void cf_wave_destroy(cf_wave *w) {
   *w = (cf_wave){0};
 }
 
+/* Rows [j, j_end) of planes [k, k_end): all, or those that have segments. */
+typedef struct window {
+  int j, j_end, k, k_end;
+} window;
+
+static window window_of(const cf_split *s) {
+  const cf_segments *g = s->segments;
+  return g == NULL ? (window){0, s->n[1], 0, s->n[2]}
+                   : (window){g->low[1], g->high[1], g->low[2], g->high[2]};
+}
+
 static void *scratch_of(const cf_wave *w) {
   return w->scratch + (size_t)omp_get_thread_num() * w->scratch_size;
 }
@@ -68,23 +80,25 @@ static cf_strip strip_of(const cf_wave *w, const cf_split *s, const int j, const
 /* --- stage by stage ----------------------------------------------------------------------------------- */
 
 /* Rows of a plane that go together: many, but enough strips for all threads. */
-static int strip_height(const cf_split *s, const int threads) {
-  if (threads == 1 || s->n[2] >= 4 * threads) return s->n[1];
-  return CF_MAX(1, s->n[1] / (4 * threads));
+static int strip_height(const window *win, const int threads) {
+  const int rows = win->j_end - win->j;
+  if (threads == 1 || win->k_end - win->k >= 4 * threads) return rows;
+  return CF_MAX(1, rows / (4 * threads));
 }
 
-static void run_stages(const cf_wave *w, const cf_pass *p) {
+static void run_stages(const cf_wave *w, const cf_pass *p, const window *win) {
   const cf_split *s = p->at;
   const ptrdiff_t cells = (ptrdiff_t)s->n[0] * s->n[1] * s->n[2];
   const int pieces = cf_wave_pieces(s), threads = cells < SERIAL_CELLS ? 1 : w->threads;
-  const int height = strip_height(s, threads), strips = (s->n[1] + height - 1) / height;
+  const int rows = win->j_end - win->j, height = strip_height(win, threads),
+            strips = (rows + height - 1) / height;
   for (int v = 0; v < p->count; ++v) {
     if (s->has_seam && cf_stage_reads_around(p->stage[v])) cf_split_fill_seams(s, s->e);
 #pragma omp parallel for schedule(static) num_threads(threads)
-    for (int q = 0; q < strips * s->n[2]; ++q)
+    for (int q = 0; q < strips * (win->k_end - win->k); ++q)
       for (int piece = 0; piece < pieces; ++piece) {
-        const int j = q % strips * height, end = CF_MIN(j + height, s->n[1]);
-        const cf_strip t = strip_of(w, s, j, end, q / strips, piece);
+        const int j = win->j + q % strips * height, end = CF_MIN(j + height, win->j_end);
+        const cf_strip t = strip_of(w, s, j, end, win->k + q / strips, piece);
         cf_stage_run(p, v, &t);
       }
   }
@@ -97,59 +111,72 @@ static void wait_for(const struct cf_wave_mark *mark, const int planes) {
     if (spins > 2000) sched_yield();
 }
 
-/* The strip that follows in rows [low, end) of the tile, in this plane or the next. */
-static void set_next(const cf_split *s, const int low, const int end, cf_strip *t) {
+/* A tile's rows, and how many planes there are (in 2D: pieces). */
+typedef struct tile {
+  window win;
+  int j, end, planes;
+} tile;
+
+/* The strip that the same stage, number v, will have next: further up in the tile, or in the next plane. */
+static void set_next(const tile *at, const int v, cf_strip *t) {
+  const int end = CF_MIN(at->end - v, at->win.j_end), height = t->end - t->j;
   t->next_j = t->end;
   t->next_k = t->k;
-  if (t->end + (t->end - t->j) <= end) return;
-  t->next_j = CF_MAX(low, 0);
-  t->next_k = t->k + 1 < s->n[2] && t->next_j + t->end - t->j <= s->n[1] ? t->k + 1 : -1;
+  if (t->end + height <= end) return;
+  t->next_j = CF_MAX(at->j - v, at->win.j);
+  t->next_k = t->k + 1 < at->win.k_end && t->next_j + height <= at->win.j_end ? t->k + 1 : -1;
 }
 
 /* All stages on rows [j, end), each a row lower than the one before. */
-static void run_block(const cf_wave *w, const cf_pass *p, const int j, const int end, const int step,
-                      const int planes, const int tile_low, const int tile_end) {
+static void run_block(const cf_wave *w, const cf_pass *p, const tile *at, const int j, const int end,
+                      const int step) {
   const cf_split *s = p->at;
   for (int v = 0; v < p->count; ++v) {
-    const int low = CF_MAX(j - v, 0), high = CF_MIN(end - v, s->n[1]), plane = step - v;
-    if (low >= high || plane < 0 || plane >= planes) continue;
-    cf_strip t = strip_of(w, s, low, high, s->dim == 3 ? plane : 0, s->dim == 3 ? 0 : plane);
-    set_next(s, tile_low - v, CF_MIN(tile_end - v, s->n[1]), &t);
+    const int low = CF_MAX(j - v, at->win.j), high = CF_MIN(end - v, at->win.j_end), plane = step - v;
+    if (low >= high || plane < 0 || plane >= at->planes) continue;
+    cf_strip t = strip_of(w, s, low, high, s->dim == 3 ? at->win.k + plane : 0, s->dim == 3 ? 0 : plane);
+    set_next(at, v, &t);
     cf_stage_run(p, v, &t);
   }
 }
 
-static void run_tile(const cf_wave *w, const cf_pass *p, const int tile, const int height, const int tiles) {
+static void run_tile(const cf_wave *w, const cf_pass *p, const window *win, const int number,
+                     const int height, const int tiles) {
   const cf_split *s = p->at;
-  const int planes = s->dim == 3 ? s->n[2] : cf_wave_pieces(s), steps = planes + p->count - 1;
-  const int end = tile + 1 < tiles ? (tile + 1) * height : s->n[1] + p->count - 1;
-  for (int step = 0; step < steps; ++step) {
-    if (tile > 0) wait_for(&w->done[tile - 1], step + 1);
-    for (int j = tile * height; j < end; j += BLOCK_ROWS)
-      run_block(w, p, j, CF_MIN(j + BLOCK_ROWS, end), step, planes, tile * height, end);
-    atomic_store_explicit(&w->done[tile].planes, step + 1, memory_order_release);
+  tile at = {.win = *win, .j = win->j + number * height};
+  at.planes = s->dim == 3 ? win->k_end - win->k : cf_wave_pieces(s);
+  at.end = number + 1 < tiles ? at.j + height : win->j_end + p->count - 1;
+  for (int step = 0; step < at.planes + p->count - 1; ++step) {
+    if (number > 0) wait_for(&w->done[number - 1], step + 1);
+    for (int j = at.j; j < at.end; j += BLOCK_ROWS)
+      run_block(w, p, &at, j, CF_MIN(j + BLOCK_ROWS, at.end), step);
+    atomic_store_explicit(&w->done[number].planes, step + 1, memory_order_release);
   }
 }
 
 /* Rows of a tile, so that its window fits the cache and all threads get as many tiles. */
-static int tile_height(const cf_split *s, const int stages, const int threads) {
+static int tile_height(const cf_split *s, const int rows, const int stages, const int threads) {
   const ptrdiff_t row = s->dim == 3 ? s->row : 2 * COLUMN;
   const ptrdiff_t fits = WINDOW_BYTES / ((stages + 2) * row * 2 * (ptrdiff_t)sizeof(float));
-  const int high = (int)CF_MIN(CF_MAX(fits, TILE_ROWS_MIN), s->n[1]);
-  int tiles = (s->n[1] + high - 1) / high;
+  const int high = (int)CF_MIN(CF_MAX(fits, TILE_ROWS_MIN), rows);
+  int tiles = (rows + high - 1) / high;
   tiles = (tiles + threads - 1) / threads * threads;
-  return CF_MAX((s->n[1] + tiles - 1) / tiles, CF_MIN(TILE_ROWS_MIN, s->n[1]));
+  return CF_MAX((rows + tiles - 1) / tiles, CF_MIN(TILE_ROWS_MIN, rows));
 }
 
 void cf_wave_run(const cf_wave *w, const cf_pass *p) {
   const cf_split *s = p->at;
   const ptrdiff_t cells = (ptrdiff_t)s->n[0] * s->n[1] * s->n[2];
+  const window win = window_of(s);
+  if (win.j >= win.j_end) return;
   if (s->has_seam || cells < SERIAL_CELLS) {
-    run_stages(w, p);
+    run_stages(w, p, &win);
     return;
   }
-  const int height = tile_height(s, p->count, w->threads), tiles = (s->n[1] + height - 1) / height;
+  const int rows = win.j_end - win.j, height = tile_height(s, rows, p->count, w->threads);
+  const int tiles = (rows + height - 1) / height;
   for (int v = 0; v < tiles; ++v) atomic_store_explicit(&w->done[v].planes, 0, memory_order_relaxed);
 #pragma omp parallel num_threads(w->threads)
-  for (int v = omp_get_thread_num(); v < tiles; v += omp_get_num_threads()) run_tile(w, p, v, height, tiles);
+  for (int v = omp_get_thread_num(); v < tiles; v += omp_get_num_threads())
+    run_tile(w, p, &win, v, height, tiles);
 }

@@ -290,7 +290,7 @@ static void a_ball_costs_nothing(void **state) {
       scene_begin(&s, dim, dim == 2 ? 192 : 48, 48);
       const cf_shape ball = cf_shape_sphere((double[]){0.47, 0.53, dim == 3 ? 0.5 : 0}, 0.23);
       OK(cf_region_add(s.region, &ball, NULL, 0, (cf_cell_kind)kind, NULL));
-      for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "ball"), 8);
+      for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "ball"), 10);
       scene_end(&s);
     }
 }

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The fast path in a part of the box: alpha and beta are numbers, and cells have kinds.
+ *
+ * The finest level is split and worked on in one sweep a cycle as in the whole box (stages_segments.c). Below it are the
+ * levels of couplings (varied.h), which know of plates, channels and pockets what split levels cannot. The iteration is the
+ * stationary one; what it gains too little on is left to conjugate gradients.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "grid/sweep.h"
+#include "solve/box_part.h"
+
+cf_status cf_box_solver_create_around(cf_box_solver **f, const cf_helmholtz *A, cf_varied *v) {
+  *f = NULL;
+  cf_box_solver *fresh;
+  CF_TRY(CF_NEW(&fresh, 1));
+  fresh->varied = v;
+  fresh->levels = 1;
+  cf_split *finest = &fresh->level[0];
+  cf_status s = cf_split_create(finest, &A->level[0], v->tiles == NULL);
+  finest->segments = &fresh->segments;
+  if (s == CF_OK) s = cf_wave_create(&fresh->wave, finest);
+  if (s != CF_OK) {
+    cf_box_solver_destroy(fresh);
+    return s;
+  }
+  *f = fresh;
+  return CF_OK;
+}
+
+/* The weights of interpolation, and which cells take part in the usual way. */
+static void take_transfers(const cf_box_solver *f) {
+  const cf_coupled *l = &f->varied->level[0];
+  const cf_split *s = &f->level[0];
+  const cf_segments *g = &f->segments;
+#pragma omp parallel for schedule(static) num_threads(s->threads)
+  for (int k = g->low[2]; k < g->high[2]; ++k)
+    for (int j = g->low[1]; j < g->high[1]; ++j) {
+      const ptrdiff_t row = cf_segments_row(s, j, k), first = cf_box_at(&l->box, 0, j, k);
+      for (ptrdiff_t v = g->first[row]; v < g->first[row + 1]; ++v) {
+        const cf_segment *q = &g->segment[v];
+        if (q->table < 0) continue;
+        for (int i = q->low; i < q->high; ++i) {
+          const ptrdiff_t entry = cf_segment_entry(q, i & 1, i / 2);
+          if (!(g->faces[entry] & CF_FACES_INSIDE)) continue;
+          g->faces[entry] |= CF_FACES_TRANSFER;
+          for (int a = 0; a < l->dim; ++a) g->weight[a][entry] = l->weight[a][first + i];
+        }
+      }
+    }
+}
+
+/* Where cell p of the box is on the split level. */
+static ptrdiff_t split_place(const cf_split *s, ptrdiff_t p, int at[3]) {
+  const cf_box *b = &s->plain->box;
+  at[2] = b->dim == 3 ? (int)(p / b->stride[2]) : 0;
+  p -= at[2] * b->stride[2];
+  at[1] = (int)(p / b->stride[1]);
+  at[0] = (int)(p - at[1] * b->stride[1]);
+  return at[1] * s->row + at[2] * s->plane + cf_split_at(s, at[0]);
+}
+
+/* The entry of a cell that has one: cells with another parent are at an edge. */
+static ptrdiff_t entry_of(const cf_box_solver *f, const int at[3]) {
+  const cf_segment *q = cf_segments_at(&f->segments, &f->level[0], at[1], at[2], at[0] / 2);
+  return q != NULL && q->table >= 0 ? cf_segment_entry(q, at[0] & 1, at[0] / 2) : -1;
+}
+
+static void mark_odds(const cf_box_solver *f) {
+  const cf_coupled *l = &f->varied->level[0];
+  for (ptrdiff_t v = 0; v < l->odds; ++v) {
+    int at[3];
+    split_place(&f->level[0], l->odd_cell[v], at);
+    const ptrdiff_t entry = entry_of(f, at);
+    f->segments.faces[entry] &= (unsigned char)~CF_FACES_TRANSFER;
+  }
+}
+
+static bool is_suitable(const cf_box_solver *f, const cf_helmholtz *A) {
+  for (int a = 0; a < A->grid.box.dim; ++a)
+    if (A->grid.box.n[a] < 2) return false;
+  if (cf_level_is_solved_directly(&A->level[0]) || f->level[0].odd_seam) return false;
+  if (!(f->scale > 1e-100) || !(f->scale < (sizeof(cf_real) == sizeof(float) ? 1e30 : 1e100))) return false;
+  return f->depth == 1 || f->varied->depth > 1;
+}
+
+cf_status cf_box_solver_set_around(cf_box_solver *f, const cf_helmholtz *A, const double alpha,
+                                   const double beta, bool *taken) {
+  cf_split *s = &f->level[0];
+  const double h = A->grid.h, stiffness = 2 * A->grid.box.dim * beta / (h * h) / alpha;
+  f->depth = stiffness <= CF_BOX_SWEEPS_ENOUGH ? 1 : f->varied->depth;
+  f->alpha = alpha;
+  f->beta = beta;
+  f->scale = alpha + 2 * A->grid.box.dim * beta / (h * h);
+  *taken = is_suitable(f, A);
+  if (!*taken) return CF_OK;
+  f->jacobi = stiffness / (1 + stiffness);
+  const double share = stiffness < INFINITY ? f->jacobi : 1;
+  const double over = f->depth == 1 ? 1 : 1 + CF_BOX_FINEST_OVER * 0.2 * share * share;
+  cf_split_set(s, alpha, beta, f->scale, (double[4]){over, over, over, over});
+  if (f->segments.rows > 0) cf_segments_clear(&f->segments, s);
+  CF_TRY(cf_segments_find(&f->segments, s, f->varied->region));
+  f->sums = f->segments.rows * cf_wave_pieces(s);
+  cf_free(f->rows);
+  f->rows = NULL;
+  CF_TRY(CF_NEW(&f->rows, CF_PASS_SUMS * f->sums));
+  if (f->depth == 1) return CF_OK;
+  take_transfers(f);
+  mark_odds(f);
+  return CF_OK;
+}
+
+double cf_box_sample_around(const cf_box_solver *f, const cf_cell b, const cf_cell x) {
+  const cf_split *s = &f->level[0];
+  const cf_segments *g = &f->segments;
+  const unsigned char *kind = f->varied->region->kind;
+  const ptrdiff_t rows = (ptrdiff_t)s->n[1] * s->n[2], step = CF_MAX(g->rows / 61, 1);
+  double largest = 0;
+  for (ptrdiff_t row = 0; row < rows; ++row) {
+    if (g->first[row] == g->first[row + 1] || g->number[row] % step != 0) continue;
+    const cf_segment *q = &g->segment[g->first[row]];
+    for (int i = q->low; i < q->high; ++i) {
+      const ptrdiff_t p = cf_box_row(&s->plain->box, row) + i;
+      if (kind[p] != CF_CELL_INSIDE) continue;
+      largest = CF_MAX(largest, CF_MAX(fabs((double)b.at[p]), f->scale * fabs((double)x.at[p])));
+    }
+  }
+  return largest;
+}
+
+/* --- cells with another parent ------------------------------------------------------------------------ */
+
+/* What is left of a cell's equation. */
+static float rest_of(const cf_box_solver *f, const ptrdiff_t p) {
+  const cf_split *s = &f->level[0];
+  int at[3];
+  const ptrdiff_t here = split_place(s, p, at), entry = entry_of(f, at);
+  const int faces = f->segments.faces[entry];
+  const float c = s->e[here];
+  float sum = (float)f->segments.held[entry] * c;
+  for (int a = 0; a < s->dim; ++a)
+    for (int side = 0; side < 2; ++side) {
+      if (!(faces >> (2 * a + side) & 1)) continue;
+      int other[3] = {at[0], at[1], at[2]};
+      other[a] = (at[a] + (side ? 1 : s->n[a] - 1)) % s->n[a];
+      sum += c - s->e[other[1] * s->row + other[2] * s->plane + cf_split_at(s, other[0])];
+    }
+  return s->r[here] - (s->alpha * c + s->coupling * sum);
+}
+
+void cf_box_gather_odds(const cf_box_solver *f) {
+  const cf_coupled *l = &f->varied->level[0], *coarse = &f->varied->level[1];
+  for (ptrdiff_t v = 0; v < l->odds; ++v) {
+    l->odd_value[v] = rest_of(f, l->odd_cell[v]);
+    if (l->odd_parent[v] != CF_NO_PARENT) coarse->r[l->odd_parent[v]] += l->odd_value[v];
+  }
+}
+
+/* The constant of an island, which its residual is divided by its diagonal for; its cells follow each other. */
+static ptrdiff_t lift_island(const cf_box_solver *f, const ptrdiff_t first) {
+  const cf_coupled *l = &f->varied->level[0];
+  double residual = 0, fixed = 0;
+  ptrdiff_t end = first;
+  for (; end < l->odds && l->odd_island[end] == l->odd_island[first]; ++end) {
+    const ptrdiff_t p = l->odd_cell[end];
+    residual += (double)l->odd_value[end];
+    fixed += (double)l->free[p] + (double)l->held[p];
+  }
+  for (ptrdiff_t v = first; v < end; ++v) l->odd_value[v] = fixed > 0 ? (float)(residual / fixed) : 0;
+  return end;
+}
+
+void cf_box_spread_odds(const cf_box_solver *f) {
+  const cf_coupled *l = &f->varied->level[0], *coarse = &f->varied->level[1];
+  int at[3];
+  for (ptrdiff_t v = 0; v < l->odds;) {
+    if (l->odd_parent[v] == CF_NO_PARENT) {
+      v = lift_island(f, v);
+      continue;
+    }
+    l->odd_value[v] = coarse->e[l->odd_parent[v]];
+    ++v;
+  }
+  for (ptrdiff_t v = 0; v < l->odds; ++v)
+    f->level[0].e[split_place(&f->level[0], l->odd_cell[v], at)] += l->odd_value[v];
+}

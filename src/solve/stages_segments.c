@@ -1,0 +1,440 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The stages on a level that has segments (segments.h): each for all segments of its rows that lie within the strip. The
+ * next coarser level is one of couplings (coupled.h), whose transfers these are: the residual summed over the children of
+ * a coarse cell, and
+ *
+ *     e += e_c + sum over axes of w_a (e_{c+a} - e_c)
+ *
+ * with w_a = 1/4 on plain segments and from a table on edge segments.
+ */
+#include <string.h>
+
+#include "solve/coupled.h"
+#include "solve/segments.h"
+#include "solve/stages_apply.h"
+
+/* A piece of a segment: the part of the strip that it takes, and the halves of its row. */
+typedef struct piece {
+  const cf_segment *segment;
+  cf_strip strip; /* of that row alone */
+  int edge;       /* 0 or 1 */
+} piece;
+
+/* Segment v as far as it lies in the strip; false: not at all. */
+CF_KERNEL int piece_of(const cf_segments *g, const cf_strip *t, const int j, const ptrdiff_t v, piece *q) {
+  q->segment = &g->segment[v];
+  q->strip = *t;
+  q->strip.j = j;
+  q->strip.end = j + 1;
+  q->strip.next_j = t->next_j + j - t->j;
+  q->strip.from = CF_MAX(t->from, q->segment->from);
+  q->strip.to = CF_MIN(t->to, q->segment->to);
+  q->edge = q->segment->table >= 0;
+  return q->strip.from < q->strip.to;
+}
+
+CF_KERNEL cf_half half_of(const int dim, const cf_split *s, const piece *q, const int colour) {
+  cf_half h = cf_half_of(dim, s, q->strip.j, q->strip.k, colour);
+  if (q->edge) {
+    const ptrdiff_t entry = cf_segment_entry(q->segment, h.parity, 0);
+    h.inverse = s->segments->inverse + entry;
+    h.diagonal = s->segments->diagonal + entry;
+    h.faces = s->segments->faces + entry;
+    h.held = s->segments->held + entry;
+  }
+  return h;
+}
+
+#define FOR_PIECES(s, t, j, q)                                                     \
+  for (ptrdiff_t v_ = (s)->segments->first[cf_segments_row(s, j, (t)->k)],         \
+                 end_v_ = (s)->segments->first[cf_segments_row(s, j, (t)->k) + 1]; \
+       v_ < end_v_; ++v_)                                                          \
+    if (piece_of((s)->segments, t, j, v_, &(q)))
+
+/* Images are for plain segments: on the others a face knows whether it is one. */
+CF_KERNEL void set_images(const cf_split *s, const piece *q, const cf_half *h, const float factor) {
+  if (!q->edge) cf_half_set_images(s, &q->strip, h, factor);
+}
+
+/* --- half sweeps -------------------------------------------------------------------------------------- */
+
+CF_KERNEL void first(const int dim, const cf_split *s, const cf_strip *t, const float omega) {
+  piece q;
+  CF_FOR_ROWS(j, t)
+  FOR_PIECES(s, t, j, q) {
+    const cf_half red = half_of(dim, s, &q, 0);
+    cf_first_half(&red, &q.strip, omega);
+  }
+}
+
+CF_KERNEL void relax(const int dim, const int fresh, const cf_split *s, const cf_strip *t, const int colour,
+                     const float omega) {
+  const float keep = 1 - omega;
+  piece q;
+  CF_FOR_ROWS(j, t)
+  FOR_PIECES(s, t, j, q) {
+    const cf_half h = half_of(dim, s, &q, colour);
+    if (fresh) {
+      const cf_half other = half_of(dim, s, &q, 1 - colour);
+      set_images(s, &q, &other, 0);
+    }
+    CF_FOR_PIECE(m, &q.strip) {
+      const float e = omega * h.inverse[m] * (h.r[m] + cf_around(dim, 1, &h, m));
+      h.e[m] = fresh ? e : keep * h.e[m] + e;
+    }
+  }
+}
+
+/* --- residual and solution ---------------------------------------------------------------------------- */
+
+/* Where the sums of a row with segments go. */
+CF_KERNEL double *sums_of(const cf_pass *p, const cf_strip *t, const int j) {
+  const ptrdiff_t row = p->at->segments->number[cf_segments_row(p->at, j, t->k)];
+  return p->rows + row * t->sum_step + t->sum % t->sum_step;
+}
+
+CF_KERNEL void last(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
+  const cf_split *s = p->at;
+  const float step = (float)p->step;
+  float *before = t->scratch;
+  piece q;
+  CF_FOR_ROWS(j, t) {
+    double products = 0;
+    int any = 0;
+    FOR_PIECES(s, t, j, q) {
+      const cf_half red = half_of(dim, s, &q, 0), black = half_of(dim, s, &q, 1);
+      const int from = q.strip.from, n = q.strip.to - from;
+      memcpy(before, black.r + from, (size_t)n * sizeof *before);
+      set_images(s, &q, &black, 1);
+      if (q.edge)
+        cf_last_half(dim, 2, &black, &q.strip, omega, step);
+      else if (cf_half_is_inner(dim, &black))
+        cf_last_half(dim, 1, &black, &q.strip, omega, step);
+      else
+        cf_last_half(dim, 0, &black, &q.strip, omega, step);
+      cf_clear_pad(s, &q.strip, &black);
+      set_images(s, &q, &red, 1);
+      products += cf_products(n, before, black.r + from);
+      any = 1;
+    }
+    if (any) sums_of(p, t, j)[CF_SUM_BLACK * p->sums] = products;
+  }
+}
+
+/* x += gain e on the cells of the piece from its first to its last inside. */
+CF_KERNEL void add(const cf_pass *p, const piece *q, const float *even, const float *odd, float *line) {
+  const int from = 2 * q->strip.from, low = CF_MAX(from, q->segment->low);
+  const int high = CF_MIN(2 * q->strip.to, q->segment->high);
+  const double gain = p->gain;
+  cf_real *x = p->x + cf_box_at(&p->at->plain->box, low, q->strip.j, q->strip.k);
+  CF_ROW_LOOP
+  for (int m = 0; m < q->strip.to - q->strip.from; ++m) {
+    line[2 * m] = even[m];
+    line[2 * m + 1] = odd[m];
+  }
+  CF_ROW_LOOP
+  for (int i = 0; i < high - low; ++i) x[i] = (cf_real)((double)x[i] + gain * (double)line[low - from + i]);
+}
+
+CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
+  const cf_split *s = p->at;
+  const float step = (float)p->step;
+  float *before = t->scratch;
+  piece q;
+  CF_FOR_ROWS(j, t) {
+    double squares = 0, products = 0;
+    int any = 0;
+    FOR_PIECES(s, t, j, q) {
+      const cf_half red = half_of(dim, s, &q, 0), black = half_of(dim, s, &q, 1);
+      const ptrdiff_t at = j * s->row + t->k * s->plane + q.strip.from;
+      if (t->next_k >= 0) cf_fetch_x(p, &q.strip, j);
+      add(p, &q, s->e + at, s->e + at + s->odd, t->scratch);
+      const int from = q.strip.from, n = q.strip.to - from;
+      memcpy(before, red.r + from, (size_t)n * sizeof *before);
+      set_images(s, &q, &black, 0);
+      if (q.edge)
+        cf_restart_half(dim, 2, &red, &q.strip, omega, step);
+      else if (cf_half_is_inner(dim, &red))
+        cf_restart_half(dim, 1, &red, &q.strip, omega, step);
+      else
+        cf_restart_half(dim, 0, &red, &q.strip, omega, step);
+      cf_clear_pad(s, &q.strip, &red);
+      products += cf_products(n, before, red.r + from);
+      squares += cf_squares(n, s->r + at, s->r + at + s->odd);
+      any = 1;
+    }
+    if (!any) continue;
+    double *sums = sums_of(p, t, j);
+    sums[CF_SUM_RESIDUAL * p->sums] = squares;
+    sums[CF_SUM_RED * p->sums] = products;
+  }
+}
+
+/* --- FORM --------------------------------------------------------------------------------------------- */
+
+/* Bytes of both halves in the order of cells. */
+CF_KERNEL void weave(const int pairs, const unsigned char *even, const unsigned char *odd,
+                     unsigned char *line) {
+  for (int m = 0; m < pairs; ++m) {
+    line[2 * m] = even[m];
+    line[2 * m + 1] = odd[m];
+  }
+}
+
+CF_KERNEL void form_edge(const int dim, const int n, const cf_forming *of, const double coupling,
+                         const unsigned char *faces, const unsigned char *held) {
+  const cf_forming f = *of;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    const int open = faces[i];
+    const double c = (double)f.x[i];
+    double sum = (open & 1 ? c - (double)f.x[i - 1] : 0) - (open & 2 ? (double)f.x[i + 1] - c : 0);
+    sum += (open & 4 ? c - (double)f.x[i - f.y] : 0) - (open & 8 ? (double)f.x[i + f.y] - c : 0);
+    if (dim == 3)
+      sum += (open & 16 ? c - (double)f.x[i - f.z] : 0) - (open & 32 ? (double)f.x[i + f.z] - c : 0);
+    const double Ax = f.alpha * c + coupling * (sum + (double)held[i] * c);
+    f.residual[i] = open & CF_FACES_INSIDE ? (double)f.b[i] - Ax : 0;
+  }
+}
+
+/* The sum of the squares of f where a cell is inside; faces NULL: everywhere. */
+CF_KERNEL double square_sum_inside(const int n, const cf_real *f, const unsigned char *faces, double *line) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) line[i] = faces == NULL || faces[i] & CF_FACES_INSIDE ? (double)f[i] : 0;
+  for (int i = n; i % CF_SUM_LANES != 0; ++i) line[i] = 0;
+  return cf_square_sum((n + CF_SUM_LANES - 1) / CF_SUM_LANES * CF_SUM_LANES, line);
+}
+
+CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
+  const cf_split *s = p->at;
+  const cf_segments *g = s->segments;
+  const double coupling = p->beta * s->plain->axis[0].lo1[1];
+  const ptrdiff_t room = 2 * s->width + CF_SPLIT_LANES;
+  double *residual = t->scratch, *line = residual + room;
+  unsigned char *open = (unsigned char *)(line + room), *held = open + room;
+  piece q;
+  CF_FOR_ROWS(j, t) {
+    double rr = 0, bb = 0, xx = 0;
+    int any = 0;
+    FOR_PIECES(s, t, j, q) {
+      const int n = cf_natural_count(s, &q.strip), pairs = q.strip.to - q.strip.from;
+      const ptrdiff_t to = j * s->row + t->k * s->plane + q.strip.from;
+      const cf_forming f = cf_forming_of(dim, p, &q.strip, j);
+      if (q.edge) {
+        const ptrdiff_t even = cf_segment_entry(q.segment, 0, q.strip.from);
+        const ptrdiff_t odd = cf_segment_entry(q.segment, 1, q.strip.from);
+        weave(pairs, g->faces + even, g->faces + odd, open);
+        weave(pairs, g->held + even, g->held + odd, held);
+        form_edge(dim, n, &f, coupling, open, held);
+      } else {
+        cf_form_row(dim, n, &f);
+      }
+      for (int i = n; i < 2 * pairs; ++i) residual[i] = 0;
+      rr += cf_square_sum(2 * pairs, residual);
+      bb += square_sum_inside(n, f.b, q.edge ? open : NULL, line);
+      xx += square_sum_inside(n, f.x, q.edge ? open : NULL, line);
+      cf_split_scaled(pairs, 1 / p->scale, residual, s->r + to, s->r + to + s->odd);
+      any = 1;
+    }
+    if (!any) continue;
+    double *sums = sums_of(p, t, j);
+    sums[CF_SUM_RESIDUAL * p->sums] = rr;
+    sums[CF_SUM_B2 * p->sums] = bb;
+    sums[CF_SUM_X2 * p->sums] = xx;
+  }
+}
+
+/* --- to the coarse level ------------------------------------------------------------------------------ */
+
+/* What a piece of a fine row leaves to its coarse cells. */
+CF_KERNEL void gather(const int dim, const cf_split *s, const piece *q, float *coarse) {
+  const cf_half red = half_of(dim, s, q, 0), black = half_of(dim, s, q, 1);
+  const float left_red = 1 - s->omega[0], left_black = (1 - s->omega[1]) / s->omega[1];
+  if (q->edge) {
+    CF_FOR_PIECE(m, &q->strip) {
+      const float from_red = left_red * red.r[m] + cf_around(dim, 1, &red, m);
+      const float from_black = left_black * (black.diagonal[m] * black.e[m]);
+      coarse[m] += (red.faces[m] & CF_FACES_TRANSFER ? from_red : 0) +
+                   (black.faces[m] & CF_FACES_TRANSFER ? from_black : 0);
+    }
+    return;
+  }
+  const int end = CF_MIN(q->strip.to, s->half[0]), pairs = CF_MIN(end, s->half[1]);
+  CF_ROW_LOOP
+  for (int m = q->strip.from; m < pairs; ++m)
+    coarse[m] +=
+        (left_red * red.r[m] + cf_around(dim, 1, &red, m)) + left_black * (black.diagonal[m] * black.e[m]);
+  if (pairs == end) return;
+  coarse[pairs] += red.parity == 0 ? left_red * red.r[pairs] + cf_around(dim, 1, &red, pairs)
+                                   : left_black * (black.diagonal[pairs] * black.e[pairs]);
+}
+
+/* The coarse row whose last child is row j of plane t->k. */
+CF_KERNEL void restrict_row(const int dim, const cf_pass *p, const cf_strip *t, const int j) {
+  const cf_split *s = p->at;
+  const cf_box *c = &p->below->box;
+  float *coarse = p->below->r + cf_box_at(c, 0, j / 2, dim == 3 ? t->k / 2 : 0);
+  piece q;
+  for (int gathering = 0; gathering < 2; ++gathering)
+    for (int k = t->k - (dim == 3 ? t->k % 2 : 0); k <= t->k; ++k)
+      for (int jj = j - j % 2; jj <= j; ++jj) {
+        cf_strip there = *t;
+        there.k = k;
+        FOR_PIECES(s, &there, jj, q) {
+          if (gathering)
+            gather(dim, s, &q, coarse);
+          else
+            memset(coarse + q.strip.from, 0,
+                   (size_t)(CF_MIN(q.strip.to, c->n[0]) - q.strip.from) * sizeof(float));
+        }
+      }
+}
+
+CF_KERNEL void restrict_rows(const int dim, const cf_pass *p, const cf_strip *t) {
+  const int *n = p->at->n;
+  if (dim == 3 && t->k % 2 == 0 && t->k + 1 < n[2]) return;
+  CF_FOR_ROWS(j, t)
+  if (j % 2 == 1 || j + 1 == n[1]) restrict_row(dim, p, t, j);
+}
+
+/* --- from the coarse level ---------------------------------------------------------------------------- */
+
+/* A coarse row and its neighbours along y and z on the side of the fine row; how much of them. */
+typedef struct mixture {
+  const float *own, *y, *z;
+  float of_y, of_z;
+} mixture;
+
+/* The neighbour of coarse row `place` along an axis, seen from fine row j: as a step, 0 beyond a wall. */
+CF_KERNEL ptrdiff_t step_to(const cf_split *s, const cf_box *c, const int a, const int j) {
+  const int step = j % 2 == 0 ? -1 : 1, to = j / 2 + step;
+  if ((to < 0 || to >= c->n[a]) && !s->plain->axis[a].periodic) return 0;
+  return step * c->stride[a];
+}
+
+CF_KERNEL mixture mixture_of(const int dim, const cf_pass *p, const int j, const int k) {
+  const cf_box *c = &p->below->box;
+  const float *own = p->below->e + cf_box_at(c, 0, j / 2, dim == 3 ? k / 2 : 0);
+  const ptrdiff_t y = step_to(p->at, c, 1, j), z = dim == 3 ? step_to(p->at, c, 2, k) : 0;
+  return (mixture){own, own + y, own + z, y != 0 ? 0.25f : 0, z != 0 ? 0.25f : 0};
+}
+
+CF_KERNEL float mixed(const int dim, const mixture *x, const int m, const float of_y, const float of_z) {
+  const float own = x->own[m], sum = own + of_y * (x->y[m] - own);
+  return dim == 3 ? sum + of_z * (x->z[m] - own) : sum;
+}
+
+/* e of even (side -1) or odd cells (1) from `from` to `end`; at a wall there is no neighbour to mix with along x. */
+CF_KERNEL void spread(const int dim, const cf_split *s, const mixture *of, const int side, int from, int end,
+                      float *e) {
+  const mixture x = *of;
+  const int last = s->half[0] - 1, wall = side < 0 ? 0 : last, periodic = s->plain->axis[0].periodic;
+  end = CF_MIN(end, s->half[side > 0]);
+  if (!periodic && wall >= from && wall < end) {
+    e[wall] += mixed(dim, &x, wall, x.of_y, x.of_z);
+    if (side < 0)
+      ++from;
+    else
+      --end;
+  }
+  CF_ROW_LOOP
+  for (int m = from; m < end; ++m)
+    e[m] += mixed(dim, &x, m, x.of_y, x.of_z) + 0.25f * (x.own[m + side] - x.own[m]);
+}
+
+CF_KERNEL void spread_edge(const int dim, const cf_segments *g, const piece *q, const mixture *of,
+                           const int parity, const int end, float *e) {
+  const mixture x = *of;
+  const int side = parity ? 1 : -1;
+  const ptrdiff_t entry = cf_segment_entry(q->segment, parity, 0);
+  const unsigned char *faces = g->faces + entry, *weight[3];
+  for (int a = 0; a < 3; ++a) weight[a] = g->weight[a] + entry;
+  const float unit = 1.0f / 256;
+  CF_ROW_LOOP
+  for (int m = q->strip.from; m < end; ++m) {
+    const float fresh = mixed(dim, &x, m, unit * (float)weight[1][m], unit * (float)weight[2][m]) +
+                        unit * (float)weight[0][m] * (x.own[m + side] - x.own[m]);
+    e[m] += (float)(faces[m] & CF_FACES_TRANSFER) * (1.0f / CF_FACES_TRANSFER) * fresh;
+  }
+}
+
+CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t) {
+  const cf_split *s = p->at;
+  piece q;
+  CF_FOR_ROWS(j, t) {
+    const mixture x = mixture_of(dim, p, j, t->k);
+    FOR_PIECES(s, t, j, q) {
+      if (t->next_k >= 0) {
+        cf_fetch_halves(s, &q.strip, s->e + cf_next_row(s, t, j));
+        cf_fetch_halves(s, &q.strip, s->r + cf_next_row(s, t, j));
+      }
+      float *e = s->e + j * s->row + t->k * s->plane;
+      for (int parity = 0; parity < 2; ++parity) {
+        if (q.edge)
+          spread_edge(dim, s->segments, &q, &x, parity, CF_MIN(q.strip.to, s->half[parity]),
+                      e + parity * s->odd);
+        else
+          spread(dim, s, &x, parity ? 1 : -1, q.strip.from, q.strip.to, e + parity * s->odd);
+      }
+    }
+  }
+}
+
+/* --- which one ---------------------------------------------------------------------------------------- */
+
+#define BOTH(name, parameters, ...)                                    \
+  CF_CLONES static void name##_2d parameters { name(2, __VA_ARGS__); } \
+  CF_CLONES static void name##_3d parameters { name(3, __VA_ARGS__); }
+BOTH(first, (const cf_split *s, const cf_strip *t, const float omega), s, t, omega)
+BOTH(last, (const cf_pass *p, const cf_strip *t, const float omega), p, t, omega)
+BOTH(update, (const cf_pass *p, const cf_strip *t, const float omega), p, t, omega)
+BOTH(form, (const cf_pass *p, const cf_strip *t), p, t)
+BOTH(restrict_rows, (const cf_pass *p, const cf_strip *t), p, t)
+BOTH(prolong_rows, (const cf_pass *p, const cf_strip *t), p, t)
+
+#define RELAX(name, dim, fresh)                                                                           \
+  CF_CLONES static void name(const cf_split *s, const cf_strip *t, const int colour, const float omega) { \
+    relax(dim, fresh, s, t, colour, omega);                                                               \
+  }
+RELAX(relax_2d, 2, 0)
+RELAX(relax_3d, 3, 0)
+RELAX(second_2d, 2, 1)
+RELAX(second_3d, 3, 1)
+
+void cf_stage_on_segments(const cf_pass *p, const int number, const cf_strip *t, const float omega) {
+  const cf_split *s = p->at;
+  const bool deep = s->dim == 3;
+  switch (p->stage[number]) {
+    case CF_PASS_FORM:
+      (deep ? form_3d : form_2d)(p, t);
+      (deep ? first_3d : first_2d)(s, t, omega);
+      break;
+    case CF_PASS_FIRST:
+      (deep ? first_3d : first_2d)(s, t, omega);
+      break;
+    case CF_PASS_SECOND:
+      (deep ? second_3d : second_2d)(s, t, 1, omega);
+      break;
+    case CF_PASS_RED:
+      (deep ? relax_3d : relax_2d)(s, t, 0, omega);
+      break;
+    case CF_PASS_BLACK:
+      (deep ? relax_3d : relax_2d)(s, t, 1, omega);
+      break;
+    case CF_PASS_LAST:
+      (deep ? last_3d : last_2d)(p, t, omega);
+      break;
+    case CF_PASS_UPDATE:
+      (deep ? update_3d : update_2d)(p, t, omega);
+      break;
+    case CF_PASS_RESTRICT:
+      (deep ? restrict_rows_3d : restrict_rows_2d)(p, t);
+      break;
+    case CF_PASS_PROLONG:
+      (deep ? prolong_rows_3d : prolong_rows_2d)(p, t);
+      break;
+    default: /* CLEAR and RESIDUAL are for odd seams, which have no segments */
+      break;
+  }
+}
