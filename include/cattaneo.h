@@ -406,8 +406,13 @@ typedef struct cf_source {
   cf_status (*flux_rate)(void *context, double t, cf_face B); /* d q/dt */
   /* Cells held at `value` with weight `fraction` in [0, 1] (0: free, 1: held). */
   cf_status (*hold)(void *context, double t, cf_cell fraction, cf_cell value);
+  /* The values of the region's cells that are held; NULL: as they are in the region. Others are not read. */
+  cf_status (*held)(void *context, double t, cf_cell value);
   void *context;
 } cf_source;
+
+/* Where in the box an equation holds, see section 3. */
+typedef struct cf_region cf_region;
 
 typedef struct cf_diffuse_params {
   cf_fn k;        /* m^2/s (times C's unit); constant or of x, y, z; >= 0 */
@@ -422,6 +427,9 @@ typedef struct cf_diffuse_params {
   /* CF_DIFFUSE_LEAPFROG: fluxes are limited so that phi >= 0 stays so; the law itself goes below 0 behind fronts
    * in 2D and 3D. */
   bool positive;
+  /* NULL: the whole box; otherwise on the same grid and as long as the object. phi is 0 in its walls, and in held cells
+   * their value, which passes through their faces; q is 0 on faces that it closes. All schemes but CF_DIFFUSE_WAVE. */
+  cf_region *region;
 } cf_diffuse_params;
 
 /* Where the scalar's sum came from and went, in absolute amounts (integral of C phi). With `first` what was
@@ -444,7 +452,10 @@ void cf_diffuse_destroy(cf_diffuse *d);
 cf_status cf_diffuse_step(cf_diffuse *d, double t, double dt, cf_cell phi, cf_face q, cf_ledger *ledger,
                           cf_solve_report *report);
 
-/* Integral of C phi over the box: what the ledger counts. */
+/* The kinds of the region's cells have changed. CF_NO_MEMORY. */
+cf_status cf_diffuse_region_changed(cf_diffuse *d);
+
+/* Integral of C phi over the box, or over the cells inside its region: what the ledger counts. */
 double cf_diffuse_content(const cf_diffuse *d, cf_cell phi);
 
 /* (inside - first - entered + left) / (|first| + entered + left), 0 if all are 0. */
@@ -589,8 +600,6 @@ typedef enum cf_cell_kind {
 #undef CF_CELL_KIND_ENUM
 } cf_cell_kind;
 
-typedef struct cf_region cf_region;
-
 /* Every cell inside. CF_NO_MEMORY. */
 cf_status cf_region_create(cf_region **r, const cf_grid *g);
 void cf_region_destroy(cf_region *r);
@@ -657,7 +666,7 @@ double cf_helmholtz_residual(cf_helmholtz *A, cf_cell x, cf_cell b);
   F(sim_warning) F(sim_field) F(sim_field_name) F(sim_metric_names) F(sim_metrics)                      \
   F(sim_save) F(sim_load)                                                                               \
   F(box_init) F(grid_init) F(cell_create) F(cell_destroy) F(face_create) F(face_destroy)                \
-  F(diffuse_create) F(diffuse_destroy) F(diffuse_step) F(diffuse_content)                               \
+  F(diffuse_create) F(diffuse_destroy) F(diffuse_step) F(diffuse_content) F(diffuse_region_changed)                               \
   F(diffuse_k_max) F(diffuse_speed_max) F(ledger_error) F(ledger_add)                                   \
   F(advect_create) F(advect_destroy) F(advect_set_velocity) F(advect_rate) F(advect_substeps)           \
   F(advect_begin) F(advect_parity) F(advect_cell) F(advect_face)                                        \

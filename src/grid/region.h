@@ -19,6 +19,7 @@
 
 #include <stdbool.h>
 
+#include "base/walls.h"
 #include "grid/shape.h"
 #include "grid/tiles.h"
 

@@ -140,17 +140,19 @@ static cf_status make(cf_flow *m, cf_registry *r) {
   const cf_scene *scene = m->scene;
   const int word = scene->flow.given.advection ? scene->flow.advection : scene->advection.scheme;
   m->scheme = cf_scalars_scheme(word);
+  CF_TRY(cf_obstacles_create(&m->solids, scene, m->grid));
+  m->scalars.obstacles = &m->solids;
   CF_TRY(cf_scalars_create(&m->scalars, scene, m->grid));
   CF_TRY(cf_scalars_carry(&m->scalars, (int)m->scheme));
   CF_TRY(cf_flow_walls_of_scene(m));
   CF_TRY(make_fields(m));
   CF_TRY(make_equations(m));
-  CF_TRY(cf_obstacles_create(&m->solids, scene, m->grid));
   CF_TRY(cf_flow_make_solids(m));
   CF_TRY(start(m));
   open_scalars(m);
   CF_TRY(cf_scalars_make(&m->scalars, isnan(scene->time.dt) ? cf_flow_natural_dt(m, 0) : scene->time.dt, r));
   CF_TRY(register_flow(m, r));
+  CF_TRY(cf_obstacles_register(&m->solids, r));
   CF_TRY(cf_drifters_create(&m->points, scene, m->grid));
   m->points.solids = &m->solids;
   return cf_drifters_start(&m->points, r);
@@ -194,4 +196,9 @@ cf_status cf_flow_create(void **model, const cf_scene *scene, cf_registry *regis
   return CF_OK;
 }
 
-cf_status cf_flow_restored(void *model) { return cf_flow_find_rate(model); }
+cf_status cf_flow_restored(void *model) {
+  cf_flow *m = model;
+  CF_TRY(cf_flow_solids_restored(m));
+  CF_TRY(cf_scalars_restored(&m->scalars));
+  return cf_flow_find_rate(m);
+}

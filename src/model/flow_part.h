@@ -61,6 +61,7 @@ cf_status cf_flow_find_rate(cf_flow *m);
 
 /* Regions for the equations; the solids at another time. CF_NO_MEMORY. */
 cf_status cf_flow_make_solids(cf_flow *m);
+cf_status cf_flow_solids_restored(cf_flow *m);
 cf_status cf_flow_place(cf_flow *m, double t, double dt);
 
 /* The known velocities on faces of closed walls and of solids. */

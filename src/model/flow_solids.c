@@ -40,21 +40,14 @@ cf_status cf_flow_make_solids(cf_flow *m) {
 cf_status cf_flow_place(cf_flow *m, const double t, const double dt) {
   if (!m->solids.changes) return CF_OK;
   CF_TRY(cf_obstacles_place(&m->solids, t, dt));
-  return set_regions(m);
+  CF_TRY(set_regions(m));
+  return cf_scalars_place(&m->scalars);
 }
 
-/* Across a periodic axis the first face is the last: it is the solid's if either cell beside it is solid. */
-static void join_ends(const cf_flow *m, const int a, const cf_face u) {
-  const cf_box *b = &m->grid->box;
-  const cf_wall_side w = cf_wall_side_of(b, a, 0);
-  for (int i_c = 0; i_c < w.n_c; ++i_c)
-    for (int i_b = 0; i_b < w.n_b; ++i_b) {
-      const ptrdiff_t first = cf_wall_cell(b, &w, i_b, i_c), end = first + b->n[a] * b->stride[a];
-      if (cf_obstacles_has(&m->solids, end - b->stride[a]) && !cf_obstacles_has(&m->solids, first))
-        u.at[a][first] = u.at[a][end];
-      else
-        u.at[a][end] = u.at[a][first];
-    }
+cf_status cf_flow_solids_restored(cf_flow *m) {
+  if (!m->solids.changes) return CF_OK;
+  CF_TRY(cf_obstacles_restored(&m->solids));
+  return set_regions(m);
 }
 
 void cf_flow_hold(const cf_flow *m, const cf_face u) {
@@ -62,5 +55,5 @@ void cf_flow_hold(const cf_flow *m, const cf_face u) {
   if (m->solids.count == 0) return;
   cf_obstacles_push(&m->solids, u);
   for (int a = 0; a < m->grid->box.dim; ++a)
-    if (m->walls.kind[a][0] == CF_FLOW_PERIODIC) join_ends(m, a, u);
+    if (m->walls.kind[a][0] == CF_FLOW_PERIODIC) cf_obstacles_join(&m->solids, a, u);
 }

@@ -13,6 +13,7 @@
 
 #include "base/mem.h"
 #include "grid/sweep.h"
+#include "grid/wall.h"
 #include "model/surface.h"
 
 #define PI    3.14159265358979323846
@@ -206,7 +207,7 @@ cf_status cf_obstacles_create(cf_obstacles *o, const cf_scene *scene, const cf_g
   CF_TRY(make_held(o));
   CF_TRY(make_owner(o, &o->owner));
   if (o->changes) CF_TRY(make_owner(o, &o->owner_still));
-  return cf_obstacles_place(o, 0, g->h); /* a length, but any time will do for what is not used yet */
+  return cf_obstacles_place(o, 0, 1e-6 * scene->time.end);
 }
 
 void cf_obstacles_destroy(cf_obstacles *o) {
@@ -264,21 +265,35 @@ static ptrdiff_t count_solid(const cf_obstacles *o) {
   return solid;
 }
 
+void cf_obstacles_pace(cf_obstacles *o, const double t, const double dt) {
+  for (int i = 0; i < o->count; ++i)
+    if (o->item[i].posed) o->item[i].pose = cf_motion_at(&o->item[i].motion, t, dt);
+}
+
+static void mark_still(const cf_obstacles *o, const double t) {
+  for (int i = 0; i < o->count; ++i)
+    if (!o->item[i].changes) mark(o, i, t, o->owner_still != NULL ? o->owner_still : o->owner);
+}
+
 cf_status cf_obstacles_place(cf_obstacles *o, const double t, const double dt) {
   if (o->count == 0 || (o->placed && !o->changes)) return CF_OK;
-  for (int i = 0; i < o->count; ++i) {
-    cf_obstacle *one = &o->item[i];
-    if (one->posed) one->pose = cf_motion_at(&one->motion, t, dt > 0 ? dt : 1e-3);
-    if (!o->placed && !one->changes) mark(o, i, t, o->owner_still != NULL ? o->owner_still : o->owner);
-  }
+  cf_obstacles_pace(o, t, dt);
+  if (!o->placed) mark_still(o, t);
   if (o->owner_still != NULL) copy_owners(o, o->owner_still, o->owner);
   for (int i = 0; i < o->count; ++i)
     if (o->item[i].changes) mark(o, i, t, o->owner);
   o->solid = count_solid(o);
   o->time = t;
+  o->dt = dt;
   o->placed = true;
   return CF_OK;
 }
+
+cf_status cf_obstacles_register(cf_obstacles *o, cf_registry *r) {
+  return o->changes ? cf_registry_add_numbers(r, "obstacles_placed", "s", &o->time, 2) : CF_OK;
+}
+
+cf_status cf_obstacles_restored(cf_obstacles *o) { return cf_obstacles_place(o, o->time, o->dt); }
 
 /* --- what scalars meet ------------------------------------------------------------------------------------- */
 
@@ -359,6 +374,39 @@ void cf_obstacles_push(const cf_obstacles *o, const cf_face u) {
         u.at[a][p + b->stride[a]] = (cf_real)speed_at(o, o->owner[p] - 1, a, next);
       }
     }
+}
+
+void cf_obstacles_join(const cf_obstacles *o, const int axis, const cf_face u) {
+  const cf_box *b = &o->grid->box;
+  const cf_wall_side w = cf_wall_side_of(b, axis, 0);
+  for (int i_c = 0; i_c < w.n_c; ++i_c)
+    for (int i_b = 0; i_b < w.n_b; ++i_b) {
+      const ptrdiff_t first = cf_wall_cell(b, &w, i_b, i_c), end = first + b->n[axis] * b->stride[axis];
+      if (cf_obstacles_has(o, end - b->stride[axis]) && !cf_obstacles_has(o, first))
+        u.at[axis][first] = u.at[axis][end];
+      else
+        u.at[axis][end] = u.at[axis][first];
+    }
+}
+
+/* What turns is as fast as its farthest corner of the box would be: an upper bound, and the same wherever cells are. */
+double cf_obstacles_speed(const cf_obstacles *o) {
+  const cf_grid *g = o->grid;
+  double fastest = 0;
+  for (int i = 0; i < o->count; ++i) {
+    const cf_pose *pose = &o->item[i].pose;
+    double speed = 0, spin = 0, reach = 0;
+    if (!o->item[i].moves) continue;
+    for (int a = 0; a < g->box.dim; ++a) {
+      const double size = g->box.n[a] * g->h, at = pose->pivot[a] + pose->shift[a] - g->origin[a];
+      const double far = CF_MAX(fabs(at), fabs(size - at));
+      reach += far * far;
+      speed += pose->velocity[a] * pose->velocity[a];
+    }
+    for (int a = 0; a < 3; ++a) spin += pose->spin[a] * pose->spin[a];
+    fastest = CF_MAX(fastest, sqrt(speed) + sqrt(spin * reach));
+  }
+  return fastest;
 }
 
 /* --- distances --------------------------------------------------------------------------------------------- */

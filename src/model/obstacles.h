@@ -5,7 +5,7 @@
  *
  *     cf_obstacles o = {0};
  *     cf_obstacles_create(&o, scene, grid);              // shapes and files; o.count may be 0
- *     cf_obstacles_place(&o, t, dt);                     // whenever time moves on, if o.changes
+ *     cf_obstacles_place(&o, t + dt, dt);                // at the end of a step, if o.changes
  *     cf_obstacles_region(&o, CF_OBSTACLES_SOLID, r);    // every cell of an obstacle a wall: what a fluid meets
  *     cf_obstacles_region(&o, field, r);                 // walls and held cells of one scalar, at their values then
  *     cf_obstacles_push(&o, u);                          // u on faces of those cells: the obstacle's own velocity
@@ -49,7 +49,7 @@ typedef struct cf_obstacles {
   cf_obstacle *item;
   bool changes; /* some obstacle does */
   bool placed;
-  double time;           /* of the latest cf_obstacles_place */
+  double time, dt;       /* of the latest cf_obstacles_place: state */
   uint16_t *owner;       /* at cell (0, 0, 0), laid out as a cell field: 0 free, else number + 1 */
   uint16_t *owner_still; /* of obstacles that stand; NULL: all do, or none */
   const cf_fn **held;    /* [field count + number]: what it holds the field at; NULL: it is a wall for it */
@@ -64,9 +64,17 @@ typedef struct cf_obstacles {
 cf_status cf_obstacles_create(cf_obstacles *o, const cf_scene *scene, const cf_grid *g);
 void cf_obstacles_destroy(cf_obstacles *o); /* a zeroed one is fine */
 
-/* Where everything is at time t; velocities are means over dt around it. Costs nothing where nothing has changed. Not
- * for concurrent use. CF_NO_MEMORY. */
+/* Where everything is at time t; velocities are means over dt around it. Costs nothing where nothing changes. Not for
+ * concurrent use. Only says CF_OK. */
 cf_status cf_obstacles_place(cf_obstacles *o, double t, double dt);
+
+/* Velocities alone, as means over dt around time t: cells stay with whom they are. */
+void cf_obstacles_pace(cf_obstacles *o, double t, double dt);
+
+/* The time of the latest place is state: adds it, and places everything anew after it was read back. Does nothing where
+ * nothing changes. */
+cf_status cf_obstacles_register(cf_obstacles *o, cf_registry *r);
+cf_status cf_obstacles_restored(cf_obstacles *o);
 
 /* Kinds of all cells for the scalar scene->fields.item[field], or CF_OBSTACLES_SOLID, and the values of held ones at the
  * time placed. */
@@ -83,6 +91,12 @@ bool cf_obstacles_value_in_time(const cf_obstacles *o, int field);
  * stands. Faces between two obstacles have that of the cell above. Walls of the box are faces like others. */
 void cf_obstacles_push(const cf_obstacles *o, cf_face u);
 
+/* Across a periodic axis the first face is the last one: the obstacle's, if either cell beside it is in one. */
+void cf_obstacles_join(const cf_obstacles *o, int axis, cf_face u);
+
+/* The fastest that a point of an obstacle moves within the box, as placed, m/s. */
+double cf_obstacles_speed(const cf_obstacles *o);
+
 /* The least distance to any obstacle, as placed; negative inside. INFINITY without obstacles. For concurrent use. */
 double cf_obstacles_distance(const cf_obstacles *o, const double place[3]);
 
@@ -97,6 +111,9 @@ static inline bool cf_obstacles_has(const cf_obstacles *o, const ptrdiff_t p) {
 
 /* Checks the list; CF_BAD_SCENE at the key. */
 cf_status cf_obstacles_resolve(cf_scene *scene);
+
+/* Whether some obstacle of the scene moves, or has a shape that depends on time. */
+bool cf_obstacles_change(const cf_scene *scene);
 
 /* Bytes that obstacles need at most, with the regions of the scalars. */
 double cf_obstacles_memory(const cf_scene *scene);

@@ -116,6 +116,17 @@ static cf_status check_kind(const checked *c) {
   return CF_OK;
 }
 
+static bool changes(const cf_scene_obstacle *o) {
+  return o->given.motion || o->given.rotation || o->path.count > 0 ||
+         (o->given.distance && o->distance.fn.in_time);
+}
+
+bool cf_obstacles_change(const cf_scene *scene) {
+  for (int i = 0; i < scene->obstacles.count; ++i)
+    if (changes(&scene->obstacles.item[i])) return true;
+  return false;
+}
+
 /* What not every model knows. */
 static cf_status check_model(const checked *c) {
   const cf_scene_obstacle *o = c->o;
@@ -128,9 +139,7 @@ static cf_status check_model(const checked *c) {
   if (!scalars && o->kind == CF_OBSTACLE_HELD)
     return fail_at(c, "kind", "must be wall: this model has no scalars to hold");
   if (!scalars && o->fields.count > 0) return fail_at(c, "fields", "goes with models that have scalars");
-  const bool moves = o->given.motion || o->given.rotation || o->path.count > 0 ||
-                     (o->given.distance && o->distance.fn.in_time);
-  if (c->scene->model == CF_SCENE_MODEL_SNOWFALL && moves)
+  if (c->scene->model == CF_SCENE_MODEL_SNOWFALL && changes(o))
     return fail_at(c, "", "moves: snow comes to lie on what stands still");
   return CF_OK;
 }

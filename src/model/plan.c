@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "model/obstacles.h"
 #include "stencil/explicit.h"
 #include "stencil/regime.h"
 
@@ -53,7 +54,8 @@ static bool is_scalar_form(const cf_scene *scene, const int field, const cf_plan
   const cf_scene_diffusion *d = &scene->fields.item[field].diffusion;
   if (plan->scheme != CF_DIFFUSE_SDIRK2 && plan->scheme != CF_DIFFUSE_LEAPFROG) return false;
   if (plan->positive || radiates(scene, field) || is_named(scene, field)) return false;
-  const int carried = scene->advection.scheme; /* by tracing back, sum(s) = 0 would not be kept */
+  if (cf_obstacles_change(scene)) return false; /* of a face that is closed the flux must be known */
+  const int carried = scene->advection.scheme;  /* by tracing back, sum(s) = 0 would not be kept */
   if (moves(scene) && (carried == CF_SCENE_ADVECTION_LINEAR || carried == CF_SCENE_ADVECTION_CUBIC))
     return false;
   return d->flux_rate == CF_SCENE_FLUX_RATE_OBJECTIVE || !moves(scene);

@@ -69,15 +69,31 @@ static cf_status move_cell(const cf_scalars *s, cf_advect *a, const cf_walls *wa
   return cf_advect_cell_in(a, &s->part, s->corner, &ends, f, through);
 }
 
-static cf_status move_one(const cf_scalars *s, cf_advect *a, cf_scalar *i) {
+/* In obstacles stands for the move what phi continues to, so that it has no slope at their surface; one that moves
+ * brings in and takes away some of that with its faces. */
+static cf_status move_phi(const cf_scalars *s, cf_advect *a, cf_scalar *i) {
   cf_through through = {0, 0};
+  const bool around = i->region != NULL;
+  double inside = 0;
+  if (around) cf_rim_fill(&s->rim, i->phi);
+  if (around) inside = cf_diffuse_sum_outside(i->diffuse, i->phi);
   CF_TRY(move_cell(s, a, &i->carried, i->phi, &through));
   i->ledger.entered += through.entered;
   i->ledger.left += through.left;
+  if (!around) return CF_OK;
+  if (s->obstacles->changes) cf_ledger_add(&i->ledger, inside - cf_diffuse_sum_outside(i->diffuse, i->phi));
+  cf_diffuse_set_outside(i->diffuse, i->phi);
+  return CF_OK;
+}
+
+static cf_status move_one(const cf_scalars *s, cf_advect *a, cf_scalar *i) {
+  CF_TRY(move_phi(s, a, i));
   if (!i->has_memory) return CF_OK;
   if (i->plan.scalar_form) return move_cell(s, a, &i->carried_flux, i->s, NULL);
   if (i->scene->flux_rate == CF_SCENE_FLUX_RATE_PARTIAL) return CF_OK; /* Appendix A's pitfall */
-  return cf_advect_face(a, &i->walls, rate_of(i), i->q);
+  CF_TRY(cf_advect_face(a, &i->walls, rate_of(i), i->q));
+  cf_diffuse_close_faces(i->diffuse, i->q);
+  return CF_OK;
 }
 
 cf_status cf_scalars_move(cf_scalars *s, const bool paper, const double t, const double dt,
@@ -154,7 +170,9 @@ int cf_scalars_metric_names(const cf_scalars *s, cf_metric *names) {
 void cf_scalars_metrics(const cf_scalars *s, double *values) {
   for (int i = 0; i < s->count; ++i) {
     const cf_scalar *one = &s->item[i];
-    cf_range range = cf_sweep_range(&s->part.box, s->grid->threads, one->phi.at + s->corner, s->rows);
+    cf_range range = one->region != NULL
+                         ? cf_scalars_range_around(s, one)
+                         : cf_sweep_range(&s->part.box, s->grid->threads, one->phi.at + s->corner, s->rows);
     if (cf_scalars_share(s) < 1) range.min = CF_MIN(range.min, 0), range.max = CF_MAX(range.max, 0);
     double *v = values + CF_SCALAR_METRICS * i;
     v[0] = range.sum * cf_grid_volume(s->grid);

@@ -8,13 +8,19 @@
  *     cf_scalars_set_velocity(&s, u);
  *     cf_scalars_make(&s, dt, registry);              // plans for steps of about dt, initial values, state
  *
+ * With obstacles (s.obstacles set before, and placed) everything goes around them. Where they move, call
+ * cf_scalars_place at the end of a step after cf_obstacles_place, and cf_scalars_restored after a state was read back.
+ *
  * and a step is Strang's, cf_scalars_move over dt/2, cf_scalars_diffuse over dt, cf_scalars_move over dt/2; those with
  * `scheme: paper` take Lie's, the whole move first.
  */
 #ifndef CF_MODEL_SCALARS_H
 #define CF_MODEL_SCALARS_H
 
+#include "grid/rim.h"
+#include "grid/sweep.h"
 #include "model/model.h"
+#include "model/obstacles.h"
 #include "model/plan.h"
 #include "model/sources.h"
 #include "physics/advect.h"
@@ -31,9 +37,11 @@ typedef struct cf_scalar {
   cf_walls walls;                 /* what diffusion meets */
   cf_walls carried, carried_flux; /* what the flow meets; s flows in as 0 */
   bool passes;                    /* the flow takes it through walls that are insulated for diffusion */
+  cf_region *region;              /* where it may be; NULL: in the whole box */
   cf_diffuse *diffuse;
   cf_sources *sources;
   cf_ledger ledger;
+  double before; /* scratch: content before obstacles moved */
   const cf_scene_diffusion *scene;
   cf_plan plan;
   double D;               /* the largest k/C */
@@ -48,6 +56,9 @@ typedef struct cf_scalars {
   bool follows;     /* the part follows them (scalars_part.c) */
   int count;
   cf_scalar *item;
+  const cf_obstacles *obstacles; /* the model's; NULL: there are none */
+  cf_region *solid;              /* every obstacle a wall; NULL: there are none */
+  cf_rim rim;                    /* of `solid` */
   bool moves;
   cf_advect *by_scheme[CF_ADVECT_SCHEMES]; /* by cf_advect_scheme, made where needed */
   double *rows;
@@ -86,6 +97,20 @@ cf_status cf_scalars_follow(cf_scalars *s, double dt);
 
 /* The share of the box that is computed. */
 double cf_scalars_share(const cf_scalars *s);
+
+/* --- obstacles (scalars_around.c) */
+
+/* The obstacles stand elsewhere. A cell that one has come into is gone with what was in it; one that it has left gets
+ * the mean of its neighbours: the ledger counts both. CF_NO_MEMORY. */
+cf_status cf_scalars_place(cf_scalars *s);
+
+/* The same for a state that was read back: nothing is lost or gained. */
+cf_status cf_scalars_restored(cf_scalars *s);
+
+/* Regions of all scalars, and of one; sum, least and largest value of the cells that are in no obstacle. */
+cf_status cf_scalars_make_solid(cf_scalars *s);
+cf_status cf_scalars_make_region(const cf_scalars *s, cf_scalar *i);
+cf_range cf_scalars_range_around(const cf_scalars *s, const cf_scalar *i);
 
 /* Diffusion and sources of all of them over [t, t + dt]. */
 cf_status cf_scalars_diffuse(cf_scalars *s, double t, double dt, cf_step_report *report);

@@ -164,10 +164,12 @@ cf_status cf_scalars_make_diffuse(const cf_scalars *m, cf_scalar *s) {
       .levels = (int)scene->solver.levels,
       .front_filter = s->plan.front_filter,
       .positive = s->plan.positive,
+      .region = s->region,
   };
   cf_source acts;
   const cf_walls walls = cf_scalars_ends(m, &s->walls, CF_WALL_INSULATED);
   CF_TRY(cf_sources_create(&s->sources, scene, &m->part, s->field, s->flux, &acts));
+  if (s->region != NULL) cf_sources_add_held(s->sources, m->obstacles, &acts);
   const cf_status made = cf_diffuse_create(&s->diffuse, &m->part, &walls, &p, &acts);
   if (made == CF_OK && s->passes && s->plan.scalar_form) cf_diffuse_let_through(s->diffuse);
   if (made != CF_BAD_ARGUMENT) return made;
@@ -198,9 +200,12 @@ static cf_status make_scalar(const cf_scalars *m, cf_scalar *s, cf_registry *r) 
     CF_TRY(cf_cell_create(&s->s, &m->grid->box));
   else
     CF_TRY(cf_face_create(&s->q, &m->grid->box));
+  CF_TRY(cf_scalars_make_region(m, s));
   CF_TRY(cf_scalars_make_diffuse(m, s));
   CF_TRY(cf_grid_sample(m->grid, &f->initial.axis[0].fn, CF_CENTRES, 0, s->phi.at));
   if (!s->plan.scalar_form) CF_TRY(initial_flux(m, s));
+  cf_diffuse_set_outside(s->diffuse, s->phi);
+  if (!s->plan.scalar_form) cf_diffuse_close_faces(s->diffuse, s->q);
   s->ledger.first = cf_diffuse_content(s->diffuse, s->phi);
   return register_scalar(s, f->unit, r);
 }
@@ -224,7 +229,7 @@ cf_status cf_scalars_create(cf_scalars *s, const cf_scene *scene, const cf_grid 
     CF_TRY(cf_cell_create(&s->item[i].phi, &g->box));
     CF_TRY(find_diffusivity(s, &s->item[i]));
   }
-  return CF_OK;
+  return cf_scalars_make_solid(s);
 }
 
 void cf_scalars_open(cf_scalars *s, const int axis, const int side) {
@@ -246,12 +251,15 @@ void cf_scalars_destroy(cf_scalars *s) {
   for (int i = 0; s->item != NULL && i < s->count; ++i) {
     cf_scalar *one = &s->item[i];
     cf_diffuse_destroy(one->diffuse);
+    cf_region_destroy(one->region);
     cf_sources_destroy(one->sources);
     cf_cell_destroy(&one->phi, &s->grid->box);
     cf_cell_destroy(&one->s, &s->grid->box);
     cf_face_destroy(&one->q, &s->grid->box);
   }
   for (int a = 0; a < CF_ADVECT_SCHEMES; ++a) cf_advect_destroy(s->by_scheme[a]);
+  cf_region_destroy(s->solid);
+  cf_rim_destroy(&s->rim);
   cf_free(s->item);
   cf_free(s->rows);
 }

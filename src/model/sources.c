@@ -23,6 +23,8 @@ struct cf_sources {
   patch *patch;
   bool in_time[2][2]; /* [kind][0: cells, 1: faces]: must be sampled anew at every time */
   bool known[2][2];
+  const cf_obstacles *obstacles; /* that hold it; NULL: none do */
+  int field;
 };
 
 static bool on_faces(const patch *p) { return p->component != CF_CENTRES; }
@@ -259,6 +261,7 @@ cf_status cf_sources_create(cf_sources **s, const cf_scene *scene, const cf_grid
   cf_sources *fresh;
   CF_TRY(CF_NEW(&fresh, 1));
   fresh->grid = g;
+  fresh->field = scalar;
   const cf_status status = add_all(fresh, scene, scene->fields.item[scalar].name, flux);
   if (status != CF_OK) {
     cf_sources_destroy(fresh);
@@ -273,6 +276,18 @@ cf_status cf_sources_create(cf_sources **s, const cf_scene *scene, const cf_grid
   }
   *s = fresh;
   return CF_OK;
+}
+
+static cf_status held(void *context, const double t, const cf_cell value) {
+  const cf_sources *s = context;
+  cf_obstacles_values(s->obstacles, s->field, t, value);
+  return CF_OK;
+}
+
+void cf_sources_add_held(cf_sources *s, const cf_obstacles *o, cf_source *acts) {
+  if (!cf_obstacles_value_in_time(o, s->field)) return;
+  s->obstacles = o;
+  acts->held = held;
 }
 
 void cf_sources_destroy(cf_sources *s) {

@@ -11,6 +11,7 @@
 
 #include "grid/field.h"
 #include "grid/grid.h"
+#include "model/obstacles.h"
 #include "model/scene.h"
 #include "physics/diffuse.h"
 
@@ -21,6 +22,9 @@ typedef struct cf_sources cf_sources;
 cf_status cf_sources_create(cf_sources **s, const cf_scene *scene, const cf_grid *g, int scalar,
                             const char *flux, cf_source *acts);
 void cf_sources_destroy(cf_sources *s); /* NULL is fine */
+
+/* The scalar has a region whose held cells have values of the time: *acts of cf_sources_create is told. */
+void cf_sources_add_held(cf_sources *s, const cf_obstacles *o, cf_source *acts);
 
 /* Sets the held faces of the flux to their values at time t. */
 void cf_sources_hold_flux(const cf_sources *s, double t, cf_face q);

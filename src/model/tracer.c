@@ -10,6 +10,9 @@
  * One step is Strang's: half a move with the flow, diffusion, half a move (each half with the velocity at its
  * middle); `scheme: paper` takes Lie's, the whole move with the old velocity and then eqs 13 to 18.
  *
+ * Around obstacles the velocity is led (detour.h), and nothing passes them. They stand still during a step and are
+ * placed anew at its end.
+ *
  * The flow does not know of the scalars: for that there is another model (flow.c).
  */
 #include <math.h>
@@ -19,12 +22,17 @@
 #include "base/mem.h"
 #include "grid/sweep.h"
 #include "grid/wall.h"
+#include "model/detour.h"
 #include "model/drifters.h"
 #include "model/scalars.h"
 #include "stencil/courant.h"
 
+#define STUCK 1e-3 /* from this share on a warning is due */
+
 typedef struct cf_tracer {
   cf_scalars scalars;
+  cf_obstacles obstacles;
+  cf_detour detour; /* where something moves around obstacles */
   bool velocity_in_time;
   double fastest;       /* largest component of the velocity on any face, m/s */
   double through_walls; /* largest that stood on an insulated wall */
@@ -78,22 +86,28 @@ static double close_walls(cf_tracer *m, const cf_face field) {
   return largest > ROUND_OFF * m->fastest ? largest : 0;
 }
 
-static cf_status sample_velocity(cf_tracer *m, const double t, const cf_face u) {
+/* The given velocity at time t, closed on walls and led around obstacles. report: NULL before there are steps. */
+static cf_status sample_velocity(cf_tracer *m, const double t, const cf_face u, cf_step_report *report) {
   const cf_grid *g = m->scalars.grid;
+  cf_solve_report one;
   for (int a = 0; a < g->box.dim; ++a)
     CF_TRY(cf_grid_sample(g, &velocity_of(m->scalars.scene, a)->fn, a, t, u.at[a]));
   m->through_walls = close_walls(m, u);
+  if (m->obstacles.count == 0) return CF_OK;
+  CF_TRY(cf_detour_make(&m->detour, u, &one));
+  if (report != NULL) cf_step_report_add(report, CF_STAGE_PROJECT, &one);
   return CF_OK;
 }
 
-static cf_status set_velocity(cf_tracer *m, const double t) {
-  CF_TRY(sample_velocity(m, t, m->u));
+static cf_status set_velocity(cf_tracer *m, const double t, cf_step_report *report) {
+  CF_TRY(sample_velocity(m, t, m->u, report));
   return cf_scalars_set_velocity(&m->scalars, m->u);
 }
 
 static cf_status make_velocity(cf_tracer *m) {
   const cf_scene *scene = m->scalars.scene;
   bool moves = false;
+  m->velocity_in_time = m->obstacles.changes;
   for (int a = 0; a < m->scalars.grid->box.dim; ++a) {
     const cf_fn *f = &velocity_of(scene, a)->fn;
     moves = moves || !cf_fn_is_constant(f) || f->value != 0;
@@ -101,13 +115,21 @@ static cf_status make_velocity(cf_tracer *m) {
   }
   if (!moves) return CF_OK;
   CF_TRY(cf_face_create(&m->u, &m->scalars.grid->box));
-  CF_TRY(cf_scalars_carry(&m->scalars, -1));
-  const cf_status status = set_velocity(m, 0);
+  return cf_scalars_carry(&m->scalars, -1);
+}
+
+/* The velocity at time 0, which plans need, and the way it takes around obstacles. */
+static cf_status begin_velocity(cf_tracer *m) {
+  const cf_scalars *s = &m->scalars;
+  if (!s->moves) return CF_OK;
+  if (m->obstacles.count > 0)
+    CF_TRY(cf_detour_create(&m->detour, &m->obstacles, &s->scene->domain.walls.walls, s->solid));
+  const cf_status status = set_velocity(m, 0, NULL);
   if (status != CF_NOT_FINITE) return status;
   char why[CF_SENTENCE_MAX];
   snprintf(why, sizeof why, "%s", cf_status_sentence());
-  return cf_scene_fail_at(scene, "velocity", "%s: is there a division by 0, or a root of a negative number?",
-                          why);
+  return cf_scene_fail_at(s->scene, "velocity",
+                          "%s: is there a division by 0, or a root of a negative number?", why);
 }
 
 static cf_status register_velocity(const cf_tracer *m, cf_registry *r) {
@@ -152,9 +174,9 @@ static cf_drift drift_of(const cf_tracer *m) {
 }
 
 /* The velocity at time t into the field of the points that is for `when`. */
-static cf_status sample_for_points(cf_tracer *m, const int when, const double t) {
+static cf_status sample_for_points(cf_tracer *m, const int when, const double t, cf_step_report *report) {
   const cf_drift flow = drift_of(m);
-  CF_TRY(sample_velocity(m, t, m->at[when]));
+  CF_TRY(sample_velocity(m, t, m->at[when], report));
   cf_courant_ghosts(m->scalars.grid, flow.wraps, m->at[when]);
   return CF_OK;
 }
@@ -166,15 +188,15 @@ static cf_status make_points(cf_tracer *m, cf_registry *r) {
   CF_TRY(cf_drifters_create(&m->points, scene, m->scalars.grid));
   for (int when = 0; when < 3 && m->points.set != NULL && m->velocity_in_time; ++when) {
     CF_TRY(cf_face_create(&m->at[when], &m->scalars.grid->box));
-    CF_TRY(sample_for_points(m, when, 0));
+    CF_TRY(sample_for_points(m, when, 0, NULL));
   }
   return cf_drifters_start(&m->points, r);
 }
 
-static cf_status move_points(cf_tracer *m, const double t, const double dt) {
+static cf_status move_points(cf_tracer *m, const double t, const double dt, cf_step_report *report) {
   if (m->points.set == NULL) return CF_OK;
   for (int when = 0; when < 3 && m->velocity_in_time; ++when)
-    CF_TRY(sample_for_points(m, when, t + when * dt / 2));
+    CF_TRY(sample_for_points(m, when, t + when * dt / 2, report));
   const cf_drift flow = drift_of(m);
   return cf_drifters_step(&m->points, &flow, t, dt);
 }
@@ -191,17 +213,21 @@ static cf_status tracer_show(void *model) {
 static double tracer_natural_dt(const void *model, const double t) {
   (void)t;
   const cf_tracer *m = model;
-  double rate = 0;
+  double rate = m->obstacles.changes ? cf_obstacles_speed(&m->obstacles) / m->scalars.grid->h : 0;
   for (int s = 0; s < CF_ADVECT_SCHEMES; ++s)
     if (m->scalars.by_scheme[s] != NULL) rate = CF_MAX(rate, cf_advect_rate(m->scalars.by_scheme[s]));
   return cf_scalars_natural_dt(&m->scalars, rate);
 }
 
 static cf_status make(cf_tracer *m, const cf_scene *scene, cf_registry *r) {
+  CF_TRY(cf_obstacles_create(&m->obstacles, scene, r->grid));
+  m->scalars.obstacles = m->points.solids = &m->obstacles;
   CF_TRY(cf_scalars_create(&m->scalars, scene, r->grid));
   CF_TRY(make_velocity(m));
+  CF_TRY(begin_velocity(m));
   CF_TRY(cf_scalars_make(&m->scalars, isnan(scene->time.dt) ? tracer_natural_dt(m, 0) : scene->time.dt, r));
   CF_TRY(register_velocity(m, r));
+  CF_TRY(cf_obstacles_register(&m->obstacles, r));
   for (int i = 0; i < m->scalars.count; ++i) CF_TRY(check_walls(m, &m->scalars.item[i]));
   return make_points(m, r);
 }
@@ -210,9 +236,11 @@ static void tracer_destroy(void *model) {
   cf_tracer *m = model;
   if (m == NULL) return;
   cf_face_destroy(&m->u, &m->scalars.grid->box);
+  cf_detour_destroy(&m->detour);
   for (int when = 0; when < 3; ++when) cf_face_destroy(&m->at[when], &m->scalars.grid->box);
   cf_drifters_destroy(&m->points);
   cf_scalars_destroy(&m->scalars);
+  cf_obstacles_destroy(&m->obstacles);
   cf_free(m);
 }
 
@@ -236,11 +264,17 @@ static cf_status move(cf_tracer *m, const bool paper, const double t, const doub
                       const double t_velocity, cf_step_report *report) {
   bool begun[CF_ADVECT_SCHEMES] = {false};
   if (!m->scalars.moves) return CF_OK;
-  if (m->velocity_in_time) CF_TRY(set_velocity(m, t_velocity));
+  if (m->velocity_in_time) CF_TRY(set_velocity(m, t_velocity, report));
   CF_TRY(cf_scalars_move(&m->scalars, paper, t, dt, begun));
   if (m->through_walls > 0 && report->warning[0] == '\0')
     snprintf(report->warning, sizeof report->warning,
              "the velocity passes through insulated walls (up to %g m/s): set to 0 there", m->through_walls);
+  if (m->detour.stuck > STUCK && report->warning[0] == '\0')
+    snprintf(
+        report->warning, sizeof report->warning,
+        "obstacles stand where the velocity enters or leaves the box: %.2g %% of what they stop has no way "
+        "out and piles up or runs dry",
+        100 * m->detour.stuck);
   return CF_OK;
 }
 
@@ -248,6 +282,7 @@ static cf_status tracer_step(void *model, const double t, const double dt, cf_st
   cf_tracer *m = model;
   double clock = cf_stage_clock();
   CF_TRY(cf_scalars_follow(&m->scalars, dt));
+  cf_obstacles_pace(&m->obstacles, t + dt / 2, dt);
   CF_TRY(move(m, true, t, dt, t, report));
   CF_TRY(move(m, false, t, dt / 2, t + dt / 4, report));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
@@ -255,15 +290,20 @@ static cf_status tracer_step(void *model, const double t, const double dt, cf_st
   clock = cf_stage_end(report, CF_STAGE_DIFFUSE, clock);
   CF_TRY(move(m, false, t + dt / 2, dt / 2, t + 3 * dt / 4, report));
   clock = cf_stage_end(report, CF_STAGE_ADVECT, clock);
-  CF_TRY(move_points(m, t, dt));
+  CF_TRY(move_points(m, t, dt, report));
   cf_stage_end(report, CF_STAGE_TRANSFER, clock);
-  return CF_OK;
+  CF_TRY(cf_obstacles_place(&m->obstacles, t + dt, dt));
+  m->detour.set = m->detour.set && !m->obstacles.changes;
+  return cf_scalars_place(&m->scalars);
 }
 
 /* The velocity has been read back as the last step had it: the length of the next one may hang on that. */
 static cf_status tracer_restored(void *model) {
   cf_tracer *m = model;
-  if (m->at[2].at[0] != NULL) CF_TRY(sample_for_points(m, 2, m->points.time));
+  CF_TRY(cf_obstacles_restored(&m->obstacles));
+  CF_TRY(cf_scalars_restored(&m->scalars));
+  m->detour.set = false;
+  if (m->at[2].at[0] != NULL) CF_TRY(sample_for_points(m, 2, m->points.time, NULL));
   return m->scalars.moves ? cf_scalars_set_velocity(&m->scalars, m->u) : CF_OK;
 }
 
@@ -290,8 +330,8 @@ static double tracer_memory(const cf_scene *scene) {
   return cf_scalars_bytes(scene, velocities + cf_scalars_memory(scene)) + cf_drifters_memory(scene);
 }
 
-static const char *const tracer_keys[] = {"diffusion", "advection", "fields", "velocity",
-                                          "sources",   "sparse",    "points", NULL};
+static const char *const tracer_keys[] = {"diffusion", "advection", "fields",    "velocity", "sources",
+                                          "sparse",    "points",    "obstacles", NULL};
 
 static cf_status tracer_check(const cf_scene *scene, const double dt, const cf_page *page) {
   (void)dt;

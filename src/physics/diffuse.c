@@ -30,6 +30,8 @@ static cf_status check_params(const cf_diffuse_params *p) {
     return cf_fail(CF_BAD_ARGUMENT, "tolerance = %g: must be between 0 and 1", p->solver.tolerance);
   if (p->positive && p->scheme != CF_DIFFUSE_LEAPFROG)
     return cf_fail(CF_BAD_ARGUMENT, "positivity needs scheme leapfrog");
+  if (p->scheme == CF_DIFFUSE_WAVE && p->region != NULL)
+    return cf_fail(CF_BAD_ARGUMENT, "scheme wave knows no obstacles: take default, leapfrog or sdirk2");
   return p->scheme == CF_DIFFUSE_WAVE ? check_wave(p) : CF_OK;
 }
 
@@ -70,18 +72,20 @@ static cf_status sample_positive(const cf_diffuse *d, const cf_fn *f, const char
 
 static cf_status make_k(cf_diffuse *d) {
   const cf_box *box = &d->grid->box;
+  const bool constant = cf_fn_is_constant(&d->p.k);
   d->k_max = d->p.k.value;
-  d->k_varies = !cf_fn_is_constant(&d->p.k);
-  if (!d->k_varies) {
-    if (!(d->k_max >= 0) || !isfinite(d->k_max))
-      return cf_fail(CF_BAD_ARGUMENT, "k = %g: must be >= 0", d->k_max);
-    return CF_OK;
-  }
-  CF_TRY(cf_face_create(&d->k, box));
+  d->k_varies = !constant || d->p.region != NULL;
+  if (constant && (!(d->k_max >= 0) || !isfinite(d->k_max)))
+    return cf_fail(CF_BAD_ARGUMENT, "k = %g: must be >= 0", d->k_max);
+  if (d->k_varies) CF_TRY(cf_face_create(&d->k, box));
+  if (constant) return CF_OK;
   CF_TRY(sample_positive(d, &d->p.k, "k", true, d->x));
   d->k_max = cf_sweep_range(box, 1, d->x.at, d->rows).max;
   cf_diffuse_copy_ghosts(d, d->x);
   faces_from_cells(box, d->x.at, d->k);
+  if (d->p.region == NULL) return CF_OK;
+  CF_TRY(cf_cell_create(&d->k_cells, box));
+  cf_diffuse_copy(d, d->x.at, d->k_cells.at);
   return CF_OK;
 }
 
@@ -107,7 +111,7 @@ static bool is_implicit(const cf_diffuse_params *p) {
 static cf_status make_scratch(cf_diffuse *d) {
   const cf_box *box = &d->grid->box;
   const bool implicit = is_implicit(&d->p);
-  if ((implicit && (d->k_varies || d->has_radiation)) || (d->p.positive && d->p.f_t > 0))
+  if ((implicit && (!cf_fn_is_constant(&d->p.k) || d->has_radiation)) || (d->p.positive && d->p.f_t > 0))
     CF_TRY(cf_face_create(&d->beta, box));
   if (d->p.front_filter) CF_TRY(cf_cell_create(&d->filtered, box));
   if (d->p.scheme == CF_DIFFUSE_WAVE) {
@@ -134,6 +138,8 @@ static cf_status make_fields(cf_diffuse *d) {
   CF_TRY(make_k(d));
   CF_TRY(make_capacity(d));
   d->speed_max = d->p.tau > 0 ? sqrt((1 - d->p.f_t) * d->k_max / (d->c_min * d->p.tau)) : 0;
+  if (d->p.region != NULL && d->p.front_filter) CF_TRY(cf_rim_create(&d->rim, box));
+  if (d->p.region != NULL) CF_TRY(cf_diffuse_region_changed(d));
   return make_scratch(d);
 }
 
@@ -182,13 +188,14 @@ void cf_diffuse_let_through(cf_diffuse *d) { d->has_open = true; }
 void cf_diffuse_destroy(cf_diffuse *d) {
   if (d == NULL) return;
   const cf_box *box = &d->grid->box;
-  cf_cell *cells[] = {&d->capacity, &d->alpha,         &d->x,     &d->b,
-                      &d->W,        &d->fraction,      &d->value, &d->filtered,
-                      &d->kept.phi, &d->kept.phi_rate, &d->change};
+  cf_cell *cells[] = {&d->k_cells,  &d->capacity, &d->alpha,         &d->x,
+                      &d->b,        &d->W,        &d->fraction,      &d->value,
+                      &d->filtered, &d->kept.phi, &d->kept.phi_rate, &d->change};
   cf_face *faces[] = {&d->k, &d->beta, &d->B, &d->kept.q};
   for (size_t i = 0; i < sizeof cells / sizeof *cells; ++i) cf_cell_destroy(cells[i], box);
   for (size_t i = 0; i < sizeof faces / sizeof *faces; ++i) cf_face_destroy(faces[i], box);
   cf_wall_values_destroy(&d->walls);
+  cf_rim_destroy(&d->rim);
   cf_helmholtz_destroy(d->A);
   cf_free(d->rows);
   cf_free(d);
@@ -211,6 +218,7 @@ double cf_diffuse_substeps(const cf_diffuse *d, const double dt) {
 static cf_status step(cf_diffuse *d, const double t, const double dt, const cf_diffused *y, cf_ledger *ledger,
                       cf_solve_report *report) {
   *report = (cf_solve_report){.converged = true};
+  cf_diffuse_set_outside(d, y->phi);
   switch (d->p.scheme) {
     case CF_DIFFUSE_PAPER:
       CF_TRY(cf_diffuse_paper(d, t, dt, y, ledger, report));
@@ -230,6 +238,7 @@ static cf_status step(cf_diffuse *d, const double t, const double dt, const cf_d
 cf_status cf_diffuse_step(cf_diffuse *d, const double t, const double dt, const cf_cell phi, const cf_face q,
                           cf_ledger *ledger, cf_solve_report *report) {
   cf_diffuse_close_seams(d, q);
+  cf_diffuse_close_faces(d, q);
   return step(d, t, dt, &(cf_diffused){.phi = phi, .q = q}, ledger, report);
 }
 

@@ -23,6 +23,14 @@ cf_status cf_diffuse_step_scalar(cf_diffuse *d, double t, double dt, cf_cell phi
  * leaves; the ledger counts it. */
 void cf_diffuse_let_through(cf_diffuse *d);
 
+/* With a region: phi in cells that are not inside as a step leaves it (walls 0, held cells their value), q = 0 on closed
+ * faces; for whoever has moved them. Without one nothing is done. */
+void cf_diffuse_set_outside(const cf_diffuse *d, cf_cell phi);
+void cf_diffuse_close_faces(const cf_diffuse *d, cf_face q);
+
+/* Integral of C phi over the cells that are not inside. */
+double cf_diffuse_sum_outside(const cf_diffuse *d, cf_cell phi);
+
 /* Explicit substeps that a step of dt takes; 1 for implicit schemes. */
 double cf_diffuse_substeps(const cf_diffuse *d, double dt);
 

@@ -141,6 +141,7 @@ static void make_positive(const cf_diffuse *d, const leap *l) {
   for (int a = 0; a < box->dim; ++a)
     FOR_FACE_ROWS(d, a, start) cap_axis(cf_box_extent(box, 0, a), l, d->speed_max, a, start);
   CF_PARALLEL_ROWS (box, d->grid->threads, r) shares_row(box->dim, box->n[0], l, cf_box_row(box, r), d->x.at);
+  cf_diffuse_fill_outside(d, 1, d->x); /* what is held never runs out */
   cf_diffuse_copy_ghosts(d, d->x);
   for (int a = 0; a < box->dim; ++a)
     FOR_FACE_ROWS(d, a, start) share_axis(cf_box_extent(box, 0, a), l, a, start, d->x.at);
@@ -173,6 +174,7 @@ static cf_status kick(cf_diffuse *d, const double t, const double dt, const cf_d
   const double tau = d->p.tau, h = d->grid->h, E = tau > 0 ? exp(-dt / tau) : 0;
   const double gain = (tau > 0 ? -expm1(-dt / tau) : 1) * (1 - d->p.f_t);
   CF_TRY(cf_diffuse_sample(d, &(cf_source_times){t, t, t, t}));
+  cf_diffuse_set_outside(d, y->phi);
   cf_diffuse_ghosts(d, &(cf_flux_law){dt, E, gain}, y->phi, y->q);
   leap l = leap_of(d, y);
   l.decay = (cf_real)E;
@@ -223,8 +225,10 @@ static cf_status drift(cf_diffuse *d, const double t, const double dt, const cf_
   l.d = (cf_real)dt;
   l.out = (cf_real)(y->s.at != NULL ? dt : dt / d->grid->h);
   if (d->p.positive && y->s.at == NULL) make_positive(d, &l);
+  cf_diffuse_clear_outside(d, y->phi);
   CF_PARALLEL_ROWS (box, d->grid->threads, r)
     drift_row_by_form(box->dim, y->s.at != NULL, box->n[0], &l, cf_box_row(box, r));
+  cf_diffuse_take_outside(d, y->phi, ledger);
   account_walls(d, y, dt, ledger);
   if (d->source.rate != NULL) cf_ledger_add(ledger, dt * cf_diffuse_integral(d, d->W));
   if (d->source.hold != NULL) cf_ledger_add(ledger, cf_diffuse_hold(d, 0, y->phi));
@@ -243,8 +247,10 @@ static void fourier_step(cf_diffuse *d, const double dt, const cf_diffused *y, c
   CF_PARALLEL_ROWS (box, d->grid->threads, r)
     kick_row_by_form(box->dim, d->k_varies, box->n[0], &l, cf_box_row(box, r));
   high_walls(d, &l);
+  cf_diffuse_clear_outside(d, y->phi);
   CF_PARALLEL_ROWS (box, d->grid->threads, r)
     drift_row_by_form(box->dim, 0, box->n[0], &l, cf_box_row(box, r));
+  cf_diffuse_take_outside(d, y->phi, ledger);
   account_walls(d, &only, dt, ledger);
 }
 

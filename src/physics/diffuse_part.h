@@ -8,6 +8,7 @@
  *   diffuse_stage.c      the implicit stage and the schemes made of it
  *   diffuse_leapfrog.c   the explicit scheme
  *   diffuse_wave.c       the explicit scheme with WENO5
+ *   diffuse_region.c     what walls and held cells within the box make of all that
  *
  * Memory of the flux comes in two forms. The face form keeps q_C on faces. The scalar form keeps s = div q_C in
  * cells: what happens to phi depends on q_C through s alone, and with one tau for all
@@ -30,6 +31,8 @@
 #ifndef CF_PHYSICS_DIFFUSE_PART_H
 #define CF_PHYSICS_DIFFUSE_PART_H
 
+#include "grid/region.h"
+#include "grid/rim.h"
 #include "grid/sweep.h"
 #include "grid/wall.h"
 #include "physics/diffuse.h"
@@ -56,10 +59,11 @@ struct cf_diffuse {
   bool has_radiation, has_open; /* some wall radiates; something can pass through some wall */
   int axes;                     /* along which something can flow */
   cf_helmholtz *A;              /* NULL for explicit schemes */
-  bool k_varies, c_varies;
+  bool k_varies, c_varies;      /* k_varies: it is taken from faces */
   double k_max, c_min, speed_max;
   double delta, per; /* for which A is set; -1: none */
   cf_face k, beta;   /* on faces, and its multiple for the operator; where k varies, or a wall radiates */
+  cf_cell k_cells;   /* k at centres, where it varies and there is a region */
   cf_cell capacity, alpha; /* C where it varies; C plus what holds, where something holds */
   cf_cell x, b, W;         /* phi~, right side, source */
   cf_cell fraction, value; /* of held cells */
@@ -67,6 +71,7 @@ struct cf_diffuse {
   cf_face B;               /* source of the flux */
   cf_cell filtered;        /* scratch of the front filter */
   cf_diffuse_kept kept;
+  cf_rim rim; /* of the region, where fronts are filtered */
   double *rows;
 };
 
@@ -151,6 +156,16 @@ double cf_diffuse_integral(const cf_diffuse *d, cf_cell f);
 double cf_diffuse_plain_integral(const cf_diffuse *d, cf_cell f);
 
 void cf_diffuse_copy(const cf_diffuse *d, const cf_real *from, cf_real *to);
+
+/* --- a region: nothing is done without one ---------------------------------------------------------------- */
+
+void cf_diffuse_halve_held(const cf_diffuse *d, cf_face beta); /* the operator doubles it there itself */
+void cf_diffuse_fill_outside(const cf_diffuse *d, cf_real value, cf_cell f); /* ... is that value there */
+void cf_diffuse_clear_outside(const cf_diffuse *d, cf_cell f); /* f = 0 in cells that are not inside */
+double cf_diffuse_sum_inside(const cf_diffuse *d, cf_cell phi);
+
+/* What held cells, which were 0 before, have taken up is counted, and they get their value. */
+void cf_diffuse_take_outside(const cf_diffuse *d, cf_cell phi, cf_ledger *ledger);
 
 /* --- schemes ---------------------------------------------------------------------------------------------- */
 

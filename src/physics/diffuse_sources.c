@@ -14,6 +14,10 @@ cf_status cf_diffuse_sample(cf_diffuse *d, const cf_source_times *t) {
   if (source->rate != NULL) CF_TRY(source->rate(source->context, t->rate, d->W));
   if (source->flux_rate != NULL) CF_TRY(source->flux_rate(source->context, t->flux_rate, d->B));
   if (source->hold != NULL) CF_TRY(source->hold(source->context, t->hold, d->fraction, d->value));
+  if (d->p.region == NULL) return CF_OK;
+  if (source->held != NULL) CF_TRY(source->held(source->context, t->walls, d->p.region->value));
+  if (source->rate != NULL) cf_diffuse_clear_outside(d, d->W);
+  if (source->hold != NULL) cf_diffuse_clear_outside(d, d->fraction);
   return CF_OK;
 }
 
@@ -45,6 +49,7 @@ void cf_diffuse_add_flux_source(const cf_diffuse *d, const double factor, const 
           q.at[a][cf_wall_cell(box, &w, i_b, i_c) + (side == 0 ? 0 : w.outward)] = 0;
     }
   }
+  cf_diffuse_close_faces(d, q);
   cf_diffuse_close_seams(d, q);
 }
 
@@ -137,7 +142,9 @@ double cf_diffuse_integral(const cf_diffuse *d, const cf_cell f) {
 
 double cf_diffuse_plain_integral(const cf_diffuse *d, const cf_cell f) { return integral(d, NULL, f); }
 
-double cf_diffuse_content(const cf_diffuse *d, const cf_cell phi) { return cf_diffuse_integral(d, phi); }
+double cf_diffuse_content(const cf_diffuse *d, const cf_cell phi) {
+  return d->p.region != NULL ? cf_diffuse_sum_inside(d, phi) : cf_diffuse_integral(d, phi);
+}
 
 CF_CLONES static void copy_row(const int n, const cf_real *from, cf_real *to) {
   CF_ROW_LOOP
@@ -176,11 +183,14 @@ static double strength(const cf_diffuse *d, const double weight, const double dt
 void cf_diffuse_filter_phi(const cf_diffuse *d, const double weight, const double dt, const cf_cell phi,
                            cf_ledger *ledger) {
   if (!d->p.front_filter) return;
-  cf_front_cell(d->grid, &d->walls.walls, strength(d, weight, dt), phi, d->filtered);
+  if (d->p.region != NULL) cf_rim_fill(&d->rim, phi);
+  cf_front_cell(d->grid, &d->walls.walls, d->p.region, strength(d, weight, dt), phi, d->filtered);
+  cf_diffuse_set_outside(d, phi);
   if (d->source.hold != NULL) cf_ledger_add(ledger, cf_diffuse_hold(d, 1, phi));
 }
 
 void cf_diffuse_filter_flux(const cf_diffuse *d, const double weight, const double dt, const cf_face q) {
-  if (d->p.front_filter && q.at[0] != NULL)
-    cf_front_face(d->grid, &d->walls.walls, strength(d, weight, dt), q, d->filtered);
+  if (!d->p.front_filter || q.at[0] == NULL) return;
+  cf_front_face(d->grid, &d->walls.walls, strength(d, weight, dt), q, d->filtered);
+  cf_diffuse_close_faces(d, q);
 }

@@ -198,9 +198,11 @@ static cf_status set_operator(cf_diffuse *d, const cf_flux_law *law) {
     return CF_OK; /* the same matrix as last time */
   d->delta = -1;  /* until all is well: after a failure the operator must be set again */
   const double beta = law->delta * law->per;
-  cf_coefficients c = {.alpha = 1, .beta = d->beta.at[0] != NULL ? 0 : beta * d->p.k.value};
+  cf_coefficients c = {
+      .alpha = 1, .beta = d->beta.at[0] != NULL ? 0 : beta * d->p.k.value, .region = d->p.region};
   if (d->beta.at[0] != NULL) {
     scale_faces(d, (cf_real)beta);
+    cf_diffuse_halve_held(d, d->beta);
     if (d->has_radiation) {
       cf_flux_law own = *law;
       cf_diffuse_visit_radiating(d, radiation_beta, &own);
@@ -367,10 +369,13 @@ static cf_status solve_held(cf_diffuse *d, const double plain, cf_solve_report *
 
 static cf_status solve_stage(cf_diffuse *d, stage *s, const cf_diffused *y, cf_solve_report *report) {
   const cf_box *box = &d->grid->box;
+  cf_diffuse_set_outside(d, y->phi);
   CF_PARALLEL_ROWS (box, d->grid->threads, r)
     right_side_row_by_form(box->dim, s->s != NULL, box->n[0], s, cf_box_row(box, r));
   CF_TRY(set_operator(d, &s->law));
   cf_helmholtz_add_walls(d->A, &d->walls, d->b);
+  cf_diffuse_clear_outside(d, d->b);
+  if (d->p.region != NULL) cf_helmholtz_add_held(d->A, d->b);
   if (d->has_radiation) cf_diffuse_visit_radiating(d, radiation_right_side, s);
   cf_diffuse_copy(d, y->phi.at, d->x.at);
   cf_solve_report one;
@@ -420,7 +425,9 @@ static cf_status run_stage(cf_diffuse *d, const stage_plan *plan, const cf_diffu
   account_walls(d, &s, y->s, ledger);
   if (d->source.hold != NULL) cf_diffuse_copy(d, y->phi.at, d->b.at); /* hold_cells needs the old phi */
   /* The paper knows no held cells; phi = phi~ would hide what they bring from the ledger. */
-  update_cells(d, &s, plan->paper && d->source.hold == NULL);
+  cf_diffuse_clear_outside(d, y->phi);
+  update_cells(d, &s, plan->paper && d->source.hold == NULL && d->p.region == NULL);
+  cf_diffuse_take_outside(d, y->phi, ledger);
   if (s.W != NULL) cf_ledger_add(ledger, plan->w * plan->delta * cf_diffuse_integral(d, d->W));
   if (d->source.hold != NULL) cf_ledger_add(ledger, hold_cells(d, &s));
   if (plan->fourier) return CF_OK;

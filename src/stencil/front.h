@@ -17,13 +17,16 @@
 #include "base/walls.h"
 #include "grid/field.h"
 #include "grid/grid.h"
+#include "grid/region.h"
 
 /* nu = weight min(1/dim, courant)/2 for waves that move `courant` = c dt/h cells a step. Weight 1 goes with
  * SDIRK2, 1/2 with leapfrog. */
 double cf_front_strength(int dim, double courant, double weight);
 
-/* Filters a cell field once; `work` is scratch, two layers of ghosts of phi are written. */
-void cf_front_cell(const cf_grid *g, const cf_walls *walls, double nu, cf_cell phi, cf_cell work);
+/* Filters a cell field once; `work` is scratch, two layers of ghosts of phi are written. With a region (NULL: none) J = 0
+ * on faces that are not between two cells inside. */
+void cf_front_cell(const cf_grid *g, const cf_walls *walls, const cf_region *region, double nu, cf_cell phi,
+                   cf_cell work);
 
 /* Filters every component of a face field. q.n on insulated walls stays as it is and q is taken as odd there. */
 void cf_front_face(const cf_grid *g, const cf_walls *walls, double nu, cf_face q, cf_cell work);

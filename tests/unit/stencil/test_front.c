@@ -67,7 +67,7 @@ static box_result run_box(const double courant, const double weight) {
       q.at[0][i] = e * q.at[0][i] - (1 - e) * K_BOX * (phi.at[i] - phi.at[i - 1]) / g.h;
     if (weight > 0) cf_front_face(&g, &walls, nu, q, work);
     for (int i = 0; i < n; ++i) phi.at[i] -= dt / g.h * (q.at[0][i + 1] - q.at[0][i]);
-    if (weight > 0) cf_front_cell(&g, &walls, nu, phi, work);
+    if (weight > 0) cf_front_cell(&g, &walls, NULL, nu, phi, work);
   }
   box_result r = {0, 1, 0, 0};
   double all = 0, variation = 0, wrong = 0, top = 0;
@@ -128,7 +128,7 @@ static void front_filter_keeps_sums_and_bounds(void **state) {
       const cf_range before = range_of(&s);
       double spread = 0;
       for (int pass = 0; pass < 5; ++pass) {
-        cf_front_cell(&s.grid, &s.walls, cf_front_strength(dim, 2, 1), s.phi, work);
+        cf_front_cell(&s.grid, &s.walls, NULL, cf_front_strength(dim, 2, 1), s.phi, work);
         const cf_range now = range_of(&s);
         assert_true(fabs(now.sum - before.sum) < 1e-12 * before.sum);
         assert_true(now.min > -1e-14 && now.max < 1 + 1e-14);
@@ -152,7 +152,7 @@ static void front_filter_treats_faces_like_cells_where_they_wrap(void **state) {
   for (int a = 0; a < 3; ++a)
     for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
       for (int i = 0; i < b->n[0]; ++i) s.u.at[a][cf_box_row(b, r) + i] = s.phi.at[cf_box_row(b, r) + i];
-  cf_front_cell(&s.grid, &s.walls, 0.1, s.phi, work);
+  cf_front_cell(&s.grid, &s.walls, NULL, 0.1, s.phi, work);
   cf_front_face(&s.grid, &s.walls, 0.1, s.u, work);
   for (int a = 0; a < 3; ++a) {
     for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
@@ -205,7 +205,7 @@ static double change_of_smooth(const int n) {
   scene_open(&s, 2, cells, walls_all(CF_WALL_PERIODIC));
   OK(cf_cell_create(&work, &s.grid.box));
   set_cells(&s, wavy);
-  cf_front_cell(&s.grid, &s.walls, 0.25, s.phi, work);
+  cf_front_cell(&s.grid, &s.walls, NULL, 0.25, s.phi, work);
   const double change = error_against(&s, wavy);
   cf_cell_destroy(&work, &s.grid.box);
   scene_close(&s);
@@ -232,7 +232,7 @@ static void front_filter_gives_the_same_bits_for_any_number_of_threads(void **st
     OK(cf_cell_create(&phi[threads - 1], &g.box));
     OK(cf_cell_create(&work, &g.box));
     fill_noise(&g.box, CF_CENTRES, phi[threads - 1].at, 8);
-    for (int pass = 0; pass < 3; ++pass) cf_front_cell(&g, &walls, 0.2, phi[threads - 1], work);
+    for (int pass = 0; pass < 3; ++pass) cf_front_cell(&g, &walls, NULL, 0.2, phi[threads - 1], work);
     cf_cell_destroy(&work, &g.box);
     for (int j = 0; j < 77; ++j)
       assert_memory_equal(phi[0].at + j * g.box.stride[1], phi[threads - 1].at + j * g.box.stride[1],
