@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Linked into a copy of the program with ld's --wrap, so that every failure passes here on its way: its format is
- * appended to the file that ERRORS_SEEN names, one a line.
+ * appended to the file that ERRORS_SEEN names, one a line. And the allocation that ALLOCATION_FAILS counts to, from 1,
+ * fails.
  */
 #define _GNU_SOURCE
 #include <fcntl.h>
@@ -11,6 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/mem.h"
 #include "io/scene_tree.h"
 #include "model/scene.h"
 
@@ -24,6 +26,11 @@ cf_status __real_cf_config_fail(const cf_config *config, cf_about about, const c
 cf_status __wrap_cf_config_fail(const cf_config *config, cf_about about, const char *format, ...);
 cf_status __real_cf_config_fail_at(const cf_config *config, const char *key, const char *format, ...);
 cf_status __wrap_cf_config_fail_at(const cf_config *config, const char *key, const char *format, ...);
+
+__attribute__((constructor)) static void take_memory(void) {
+  const char *at = getenv("ALLOCATION_FAILS");
+  if (at != NULL) cf_mem_fail_at(atol(at));
+}
 
 static void note(const char *format) {
   const char *path = getenv("ERRORS_SEEN");

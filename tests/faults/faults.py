@@ -299,6 +299,65 @@ class Checkpoints(Case):
                 self.compare(self.compared, "d", "a half line")
 
 
+class Memory(Case):
+    """The n-th allocation of a command fails: it says so with exit code 5, and what was there before is whole."""
+
+    def deny(self, at, *words):
+        witness = str(pathlib.Path(PROGRAM).parents[1] / "tests/cattaneo_witness")
+        environment = {**os.environ, "GOMP_SPINCOUNT": "1000", "ALLOCATION_FAILS": str(at)}
+        return subprocess.run([witness, *words], cwd=self.folder, capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, timeout=120, env=environment)
+
+    def walk(self, words, prepare=lambda: None, after=lambda why: None):
+        """Ever later allocations, until the command does not need as many."""
+        at, failed = 1, 0
+        while True:
+            prepare()
+            why = f"allocation {at} of {' '.join(words)}"
+            done = self.deny(at, *words)
+            if done.returncode == 0:
+                self.assertGreater(failed, 0, why)
+                return
+            failed += 1
+            self.assertEqual(done.returncode, 5, f"{why}: {done.stderr}")
+            self.assertRegex(done.stderr, r"memory", why)
+            after(why)
+            at = at + 1 if EVERY else at + 1 + at // 2
+
+    def test_run(self):
+        whole = self.whole()
+        self.walk(Disk.RUN, lambda: shutil.rmtree(self.folder / "d", ignore_errors=True),
+                  lambda why: self.go_on(whole, "d", why))
+
+    def test_resume(self):
+        whole = self.whole()
+        self.assertEqual(self.run_scene("half", "--steps", "12").returncode, 0)
+
+        def half_way():
+            shutil.rmtree(self.folder / "d", ignore_errors=True)
+            shutil.copytree(self.folder / "half", self.folder / "d")
+
+        self.walk(Disk.RESUME, half_way, lambda why: self.go_on(whole, "d", why, least=12))
+
+    def test_commands_that_write_nothing(self):
+        self.assertEqual(self.run_scene("d", "--steps", "2").returncode, 0)
+        for words in (("check", "scene.yaml"), ("info", "d"), ("explain", "diffusion.k")):
+            self.walk(words)
+
+    def test_pictures(self):
+        self.whole()
+        self.walk(("render", "whole", "--size", "64x48", "-o", "x.png", "--threads", "1"))
+
+    def test_sweep(self):
+        words = ("sweep", "scene.yaml", "-o", "s", "--grid", "diffusion.tau=0.3,0.6", "--threads", "1", "-j", "1")
+        for at in (3, 50, 200, 260):
+            done = self.deny(at, *words, "--set", "time.end=0.04")
+            self.assertIn(done.returncode, (0, 1, 5), f"allocation {at}: {done.stderr}")
+            self.assertIn("memory" if done.returncode else "", done.stderr)
+        done = self.call(*words, "--set", "time.end=0.04")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
 class Limits(Case):
     """Address space in steps from what the program itself takes to what the run takes."""
 
