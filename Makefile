@@ -6,10 +6,11 @@
 #   make            installs what is missing, builds build/bin/cattaneo (double) and build/bin/cattaneof (single)
 #   make demo       the same, then runs the main example and says where its pictures and data are (under out/)
 #   make test       the same, then every test but the long ones
-#   make test-long  every test
+#   make test-long  every test, then those that are not long again under the sanitizers and valgrind (hours)
 #   make gallery    makes every picture of the examples and the README (hours; may be stopped and called again)
 #   make fuzz       readers under libFuzzer (clang), FUZZ_SECONDS each: 3600
 #   make sanitize   every test but the long ones with the address, undefined-behaviour and thread sanitizers
+#   make valgrind   the tests of the floors under valgrind
 #   make format     puts the C files into the project's form (clang-format)
 #   make lint       what can be said about the sources without running them
 #   make clean      removes build/
@@ -20,7 +21,7 @@ BUILD ?= build
 JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
 CTEST  = ctest --test-dir $(BUILD) --output-on-failure -j$(JOBS)
 
-.PHONY: all demo gallery test test-long fuzz sanitize format lint clean setup setup-tests configure programs
+.PHONY: all demo gallery test test-long fuzz sanitize valgrind format lint clean setup setup-tests setup-checks configure programs
 
 all: programs
 
@@ -31,6 +32,9 @@ setup:
 
 setup-tests:
 	@tools/setup.sh build test
+
+setup-checks:
+	@tools/setup.sh build test check
 
 # Ninja where there is a choice; a folder that was configured before keeps what it has.
 configure:
@@ -60,19 +64,29 @@ test-long: setup-tests
 	@$(MAKE) --no-print-directory configure
 	@cmake --build $(BUILD) --parallel $(JOBS)
 	@$(CTEST)
+	@$(MAKE) --no-print-directory sanitize valgrind
 
 FUZZ_SECONDS ?= 3600
 
-fuzz: setup-tests
+fuzz: setup-checks
 	@cmake --preset fuzz -DCATTANEO_FUZZ_SECONDS=$(FUZZ_SECONDS)
 	@cmake --build --preset fuzz --parallel $(JOBS)
 	@ctest --preset fuzz -j$(JOBS)
 
-sanitize: setup-tests
+sanitize: setup-checks
 	@for preset in asan-ubsan tsan; do \
 	  cmake --preset $$preset && cmake --build --preset $$preset --parallel $(JOBS) && \
 	  ctest --preset $$preset -j$(JOBS) --label-exclude long || exit 1; \
 	done
+
+VALGRIND = valgrind -q --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite \
+  --show-leak-kinds=definite --suppressions=$(CURDIR)/tests/memory/known.supp
+
+valgrind: setup-checks
+	@$(MAKE) --no-print-directory configure
+	@cmake --build $(BUILD) --parallel $(JOBS)
+	@cd $(BUILD) && ls tests/unit_* tests/memory_* | grep -v _single | OMP_NUM_THREADS=2 OMP_WAIT_POLICY=passive \
+	  xargs -P$(JOBS) -I{} sh -c '$(VALGRIND) {} >{}.valgrind 2>&1 && echo "{}: clean" || { cat {}.valgrind; exit 255; }'
 
 # --- sources ----------------------------------------------------------------------------------------------
 

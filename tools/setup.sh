@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# Installs what is missing on Debian 12 with apt-get: `tools/setup.sh build` what the programs need,
-# `tools/setup.sh build test` what the tests need as well, `gallery` what the pictures of the gallery need. One
+# Installs what is missing on Debian 12 with apt-get: `tools/setup.sh build` what the programs need, `build test` what
+# the tests need as well, `check` what sanitizers, fuzzing and valgrind need, `gallery` what the pictures need. One
 # line says what is installed; root is asked nothing. Anybody else gets the line to ask an administrator for, and
 # exit code 2. Elsewhere than on Debian it leaves the matter to CMake, which names what it cannot find.
 set -eu
@@ -10,6 +10,7 @@ set -eu
 build="gcc g++ make cmake ninja-build pkg-config libfyaml-dev libmuparser-dev libudunits2-dev libhdf5-dev \
 libpng-dev libembree-dev libopenvdb-dev libboost-dev libcmocka-dev"
 test="python3 python3-numpy python3-h5py python3-venv"
+check="clang libclang-rt-14-dev libomp-14-dev valgrind"
 gallery="imagemagick ffmpeg"
 
 wanted=""
@@ -17,8 +18,9 @@ for word in "$@"; do
   case $word in
     build) wanted="$wanted $build" ;;
     test) wanted="$wanted $test" ;;
+    check) wanted="$wanted $check" ;;
     gallery) wanted="$wanted $gallery" ;;
-    *) echo "setup.sh: $word is none of build, test, gallery" >&2; exit 2 ;;
+    *) echo "setup.sh: $word is none of build, test, check, gallery" >&2; exit 2 ;;
   esac
 done
 

@@ -143,7 +143,8 @@ CF_KERNEL void first_row(const int dim, const int n, const view *v, const place 
   for (int i = 0; i < n; ++i) e[i] = ((i ^ at.parity) & 1) == 0 ? omega * (inverse[i] * r[i]) : 0;
 }
 
-/* Neighbours have the other colour, so rows may run in any order and the loop in vectors. form 1: a cell is over-relaxed by
+/* Neighbours have the other colour, so rows may run in any order and the loop in vectors; both colours are computed and
+ * one is kept, so that what is read while another thread changes it does not count. form 1: a cell is over-relaxed by
  * what couplings have of its diagonal; one that a large alpha holds is simply solved. */
 CF_KERNEL void half_row(const int dim, const int form, const int n, const view *v, const place at) {
   const view w = *v;

@@ -15,13 +15,7 @@
 /* Mapped address space of this process, in kB; 0 where the system does not tell, or where a tool that watches
  * memory maps its own. */
 static long mapped(void) {
-#ifdef __SANITIZE_ADDRESS__
-  const int watched = 1;
-#else
-  const char *preloaded = getenv("LD_PRELOAD");
-  const int watched = preloaded != NULL && strstr(preloaded, "vgpreload") != NULL;
-#endif
-  if (watched) return 0;
+  if (test_memory_is_watched()) return 0;
   char line[256];
   long size = 0;
   FILE *f = fopen("/proc/self/status", "r");

@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -35,6 +37,16 @@
     const double a_ = (double)(a), b_ = (double)(bound);                      \
     if (!(a_ <= b_)) fail_msg("%s = %.6g: must be at most %.6g", #a, a_, b_); \
   } while (0)
+
+/* Whether a sanitizer or valgrind watches over memory, and so takes and gives address space of its own. */
+static inline int test_memory_is_watched(void) {
+#ifdef __SANITIZE_ADDRESS__
+  return 1;
+#else
+  const char *preloaded = getenv("LD_PRELOAD");
+  return preloaded != NULL && strstr(preloaded, "vgpreload") != NULL;
+#endif
+}
 
 /* Uniform in [0, 1). */
 static inline double test_random(uint64_t *state) {

@@ -198,6 +198,58 @@ static void the_ledger_closes_to_round_off(void **state) {
   cf_session_close(s);
 }
 
+/* Long steps that the solver cannot do in 8 iterations; a quarter of them it can. */
+static const char *const stiff_text =
+    "cattaneo: 1\n"
+    "model: tracer\n"
+    "domain: {size: [1, 0.75], cells: [64, 48]}\n"
+    "time: {end: 0.4, dt: 0.1, frames: 10, retry: 3}\n"
+    "diffusion: {k: '1 + 10*x', scheme: sdirk2, tau: 0.01}\n"
+    "fields: {phi: {initial: 'exp(-((x-.4)^2+(y-.3)^2)/.005)'}}\n"
+    "solver: {max_iterations: 8, tolerance: 1e-9, on_stall: stop}\n"
+    "output: {checkpoint: {every: 1 steps}}\n";
+
+static void a_step_that_fails_is_tried_again_in_halves(void **state) {
+  (void)state;
+  if (sizeof(cf_real) == sizeof(float)) return; /* whose round-off is above that tolerance */
+  const char *whole = folder_fresh("retry"), *parts = folder_fresh("retry-parts");
+  char scene[1100];
+  file_write(whole, "scene.yaml", stiff_text);
+  snprintf(scene, sizeof scene, "%s/scene.yaml", whole);
+  cf_session *s;
+  cf_session_options o = options(whole, 1);
+  OK(cf_session_start(&s, scene, 0, NULL, &o));
+  OK(cf_session_run(s));
+  assert_int_equal(cf_session_sim(s)->retries, 2);
+  assert_int_equal(cf_session_sim(s)->step, 16);
+  cf_session_close(s);
+  /* That steps are short is state like any other. */
+  o = options(parts, 1);
+  o.steps = 5;
+  OK(cf_session_start(&s, scene, 0, NULL, &o));
+  OK(cf_session_run(s));
+  cf_session_close(s);
+  o.steps = 0;
+  OK(cf_session_resume(&s, parts, &o));
+  OK(cf_session_run(s));
+  cf_session_close(s);
+  assert_int_equal(folders_compare(whole, parts, compared), folders_compare(parts, whole, compared));
+}
+
+static void a_step_that_fails_too_often_ends_the_run(void **state) {
+  (void)state;
+  const char *folder = folder_fresh("retry-used-up"), *set[] = {"solver.max_iterations=2"};
+  char scene[1100];
+  file_write(folder, "scene.yaml", stiff_text);
+  snprintf(scene, sizeof scene, "%s/scene.yaml", folder);
+  cf_session *s;
+  const cf_session_options o = options(folder, 1);
+  OK(cf_session_start(&s, scene, 1, set, &o));
+  assert_int_equal(cf_session_run(s), CF_NOT_CONVERGED);
+  assert_non_null(strstr(cf_status_sentence(), "time.retry is used up"));
+  cf_session_close(s);
+}
+
 /* The n-th allocation fails, for every n until none is left to fail: always a status, never a crash or a leak. */
 static void every_failed_allocation_is_a_status(void **state) {
   (void)state;
@@ -230,6 +282,8 @@ int main(void) {
       cmocka_unit_test(a_bad_scene_leaves_nothing_behind),
       cmocka_unit_test(a_run_over_the_memory_limit_is_refused_with_the_numbers),
       cmocka_unit_test(the_ledger_closes_to_round_off),
+      cmocka_unit_test(a_step_that_fails_is_tried_again_in_halves),
+      cmocka_unit_test(a_step_that_fails_too_often_ends_the_run),
       cmocka_unit_test(every_failed_allocation_is_a_status),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
