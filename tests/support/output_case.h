@@ -124,4 +124,20 @@ static inline void assert_says(const char *part) {
     fail_msg("\"%s\" is not in: %s", part, cf_status_sentence());
 }
 
+/* The same as the set-up and tear-down of a test; the case is its state. */
+static inline int output_case_begin(void **state, const int dim) {
+  static output_case one;
+  output_case_create(&one, dim);
+  *state = &one;
+  return 0;
+}
+
+static inline int output_case_2d(void **state) { return output_case_begin(state, 2); }
+static inline int output_case_3d(void **state) { return output_case_begin(state, 3); }
+
+static inline int output_case_end(void **state) {
+  output_case_destroy(*state);
+  return 0;
+}
+
 #endif

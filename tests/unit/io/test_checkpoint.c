@@ -9,25 +9,6 @@
 #include "io/checkpoint.h"
 #include "output_case.h"
 
-static output_case the_case;
-
-static int setup(void **state) {
-  output_case_create(&the_case, 3);
-  *state = &the_case;
-  return 0;
-}
-
-static int setup_2d(void **state) {
-  output_case_create(&the_case, 2);
-  *state = &the_case;
-  return 0;
-}
-
-static int teardown(void **state) {
-  output_case_destroy(*state);
-  return 0;
-}
-
 /* Everything that is state, one after the other. */
 static size_t snapshot(const output_case *c, unsigned char *bytes) {
   const cf_box *b = &c->grid.box;
@@ -318,20 +299,22 @@ static void strange_files_are_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(checkpoint_restores_every_bit, setup, teardown),
-      cmocka_unit_test_setup_teardown(checkpoint_describes_itself, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(every_flipped_bit_is_found_and_the_state_stays, setup, teardown),
-      cmocka_unit_test_setup_teardown(damage_names_the_array, setup, teardown),
-      cmocka_unit_test_setup_teardown(other_shapes_and_names_are_refused, setup, teardown),
-      cmocka_unit_test_setup_teardown(particles_get_room, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(other_attributes_are_refused, setup, teardown),
-      cmocka_unit_test_setup_teardown(no_particles_is_a_state_too, setup, teardown),
-      cmocka_unit_test_setup_teardown(the_last_few_are_kept, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(newest_good_one_is_found, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(a_full_disk_leaves_the_earlier_checkpoint, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(same_state_same_bytes, setup, teardown),
-      cmocka_unit_test_setup_teardown(failing_memory_loses_nothing, setup, teardown),
-      cmocka_unit_test_setup_teardown(strange_files_are_refused, setup, teardown),
+      cmocka_unit_test_setup_teardown(checkpoint_restores_every_bit, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(checkpoint_describes_itself, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(every_flipped_bit_is_found_and_the_state_stays, output_case_3d,
+                                      output_case_end),
+      cmocka_unit_test_setup_teardown(damage_names_the_array, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(other_shapes_and_names_are_refused, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(particles_get_room, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(other_attributes_are_refused, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(no_particles_is_a_state_too, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(the_last_few_are_kept, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(newest_good_one_is_found, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(a_full_disk_leaves_the_earlier_checkpoint, output_case_2d,
+                                      output_case_end),
+      cmocka_unit_test_setup_teardown(same_state_same_bytes, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(failing_memory_loses_nothing, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(strange_files_are_refused, output_case_3d, output_case_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,25 +11,6 @@
 #include "io/frame.h"
 #include "output_case.h"
 
-static output_case the_case;
-
-static int setup(void **state) {
-  output_case_create(&the_case, 3);
-  *state = &the_case;
-  return 0;
-}
-
-static int setup_2d(void **state) {
-  output_case_create(&the_case, 2);
-  *state = &the_case;
-  return 0;
-}
-
-static int teardown(void **state) {
-  output_case_destroy(*state);
-  return 0;
-}
-
 static cf_status write_frame(output_case *c, const int64_t frame, const int compression) {
   const cf_frame_plan all = {.compression = compression};
   c->stamp.time = 0.25 * (double)frame;
@@ -201,15 +182,15 @@ static void files_that_are_no_frames_are_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(frame_reads_back_as_written, setup, teardown),
-      cmocka_unit_test_setup_teardown(names_choose_what_is_written, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(series_lists_the_times, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(same_frame_same_bytes, setup, teardown),
-      cmocka_unit_test_setup_teardown(a_full_disk_leaves_the_earlier_frames, setup, teardown),
-      cmocka_unit_test_setup_teardown(a_missing_folder_is_said, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(no_particles_make_an_empty_file, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(failing_memory_leaves_no_half_file, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(files_that_are_no_frames_are_refused, setup_2d, teardown),
+      cmocka_unit_test_setup_teardown(frame_reads_back_as_written, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(names_choose_what_is_written, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(series_lists_the_times, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(same_frame_same_bytes, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(a_full_disk_leaves_the_earlier_frames, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(a_missing_folder_is_said, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(no_particles_make_an_empty_file, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(failing_memory_leaves_no_half_file, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(files_that_are_no_frames_are_refused, output_case_2d, output_case_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

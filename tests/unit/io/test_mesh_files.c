@@ -14,19 +14,6 @@
 #include "output_case.h"
 #include "testing.h"
 
-static output_case the_case;
-
-static int setup(void **state) {
-  output_case_create(&the_case, 3);
-  *state = &the_case;
-  return 0;
-}
-
-static int teardown(void **state) {
-  output_case_destroy(*state);
-  return 0;
-}
-
 static cf_mesh *empty(void) {
   cf_mesh *m;
   OK(cf_mesh_create(&m));
@@ -226,12 +213,12 @@ static void a_frame_has_its_surface(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(what_is_written_is_read, setup, teardown),
-      cmocka_unit_test_setup_teardown(files_of_others_are_understood, setup, teardown),
-      cmocka_unit_test_setup_teardown(both_byte_orders_are_read, setup, teardown),
-      cmocka_unit_test_setup_teardown(mistakes_are_said, setup, teardown),
-      cmocka_unit_test_setup_teardown(damaged_files_do_no_harm, setup, teardown),
-      cmocka_unit_test_setup_teardown(a_frame_has_its_surface, setup, teardown),
+      cmocka_unit_test_setup_teardown(what_is_written_is_read, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(files_of_others_are_understood, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(both_byte_orders_are_read, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(mistakes_are_said, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(damaged_files_do_no_harm, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(a_frame_has_its_surface, output_case_3d, output_case_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

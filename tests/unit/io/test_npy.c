@@ -6,25 +6,6 @@
 #include "io/npy.h"
 #include "output_case.h"
 
-static output_case the_case;
-
-static int setup(void **state) {
-  output_case_create(&the_case, 3);
-  *state = &the_case;
-  return 0;
-}
-
-static int setup_2d(void **state) {
-  output_case_create(&the_case, 2);
-  *state = &the_case;
-  return 0;
-}
-
-static int teardown(void **state) {
-  output_case_destroy(*state);
-  return 0;
-}
-
 /* Checks the head of a file and returns its values: *bytes is to be freed. */
 static const cf_real *values_of(const output_case *c, const char *name, const char *shape, const size_t count,
                                 char **bytes) {
@@ -108,10 +89,10 @@ static void failing_memory_leaves_no_half_file(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(arrays_are_in_c_order_without_ghosts, setup, teardown),
-      cmocka_unit_test_setup_teardown(two_dimensions_are_two, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(unknown_names_and_folders_are_said, setup, teardown),
-      cmocka_unit_test_setup_teardown(failing_memory_leaves_no_half_file, setup, teardown),
+      cmocka_unit_test_setup_teardown(arrays_are_in_c_order_without_ghosts, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(two_dimensions_are_two, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(unknown_names_and_folders_are_said, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(failing_memory_leaves_no_half_file, output_case_3d, output_case_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

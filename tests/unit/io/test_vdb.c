@@ -14,25 +14,6 @@
 #include "output_case.h"
 #include "testing.h"
 
-static output_case the_case;
-
-static int setup(void **state) {
-  output_case_create(&the_case, 3);
-  *state = &the_case;
-  return 0;
-}
-
-static int setup_2d(void **state) {
-  output_case_create(&the_case, 2);
-  *state = &the_case;
-  return 0;
-}
-
-static int teardown(void **state) {
-  output_case_destroy(*state);
-  return 0;
-}
-
 #ifdef CF_WITH_OPENVDB
 
 typedef struct found {
@@ -155,11 +136,11 @@ static void a_full_disk_is_said(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(fields_are_where_and_what_they_were, setup, teardown),
-      cmocka_unit_test_setup_teardown(small_values_are_left_out, setup, teardown),
-      cmocka_unit_test_setup_teardown(a_plane_is_one_voxel_thick, setup_2d, teardown),
-      cmocka_unit_test_setup_teardown(same_fields_same_bytes, setup, teardown),
-      cmocka_unit_test_setup_teardown(a_full_disk_is_said, setup, teardown),
+      cmocka_unit_test_setup_teardown(fields_are_where_and_what_they_were, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(small_values_are_left_out, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(a_plane_is_one_voxel_thick, output_case_2d, output_case_end),
+      cmocka_unit_test_setup_teardown(same_fields_same_bytes, output_case_3d, output_case_end),
+      cmocka_unit_test_setup_teardown(a_full_disk_is_said, output_case_3d, output_case_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
@@ -174,9 +155,8 @@ static void without_openvdb_it_says_so(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(without_openvdb_it_says_so, setup, teardown),
+      cmocka_unit_test_setup_teardown(without_openvdb_it_says_so, output_case_3d, output_case_end),
   };
-  (void)setup_2d;
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 
