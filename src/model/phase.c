@@ -97,7 +97,8 @@ static double integral(const cf_crystal *m, const cf_cell f) {
 
 static cf_status grow_explicitly(cf_crystal *m, const double t, const double dt) {
   const cf_phase_limits l = cf_phase_limits_of(m->phase);
-  cf_phase_explicit how = {m->order, cf_crystal_substeps(&l, dt * (m->order == 1 ? 1.3 : 1)), {NULL}};
+  cf_phase_explicit how = {
+      m->order, cf_crystal_substeps(&l, dt * (m->order == 1 ? 1.3 : 1)), {NULL}, m->moves};
   if (m->acts.rate != NULL) {
     CF_TRY(m->acts.rate(m->acts.context, t + dt / 2, m->W));
     how.W = m->W;

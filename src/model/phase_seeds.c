@@ -239,13 +239,13 @@ void cf_crystal_grow_grains(cf_crystal *m) {
   cf_crystal_turn(m);
 }
 
+CF_CLONES static void arrival_row(const int n, const cf_real now, const cf_real *eta, cf_real *arrival) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) arrival[i] = arrival[i] < 0 && eta[i] >= (cf_real)0.5 ? now : arrival[i];
+}
+
 void cf_crystal_note_arrival(cf_crystal *m, const double t) {
   const cf_box *box = &m->grid->box;
-  const cf_real now = (cf_real)t;
-  CF_PARALLEL_ROWS (box, m->grid->threads, r) {
-    const cf_real *eta = m->y.eta.at + cf_box_row(box, r);
-    cf_real *arrival = m->arrival.at + cf_box_row(box, r);
-    for (int i = 0; i < box->n[0]; ++i)
-      arrival[i] = arrival[i] < 0 && eta[i] >= (cf_real)0.5 ? now : arrival[i];
-  }
+  CF_PARALLEL_ROWS (box, m->grid->threads, r)
+    arrival_row(box->n[0], (cf_real)t, m->y.eta.at + cf_box_row(box, r), m->arrival.at + cf_box_row(box, r));
 }

@@ -111,6 +111,7 @@ cf_anisotropy_bounds cf_phase_bounds(const cf_phase *p);
 typedef struct cf_phase_explicit {
   int order, substeps;
   cf_cell W;
+  bool leaks; /* a flow has carried w through the walls: what is left of it no longer adds up to 0 */
 } cf_phase_explicit;
 cf_status cf_phase_step_explicit(cf_phase *p, double t, double dt, const cf_phase_explicit *how,
                                  const cf_phase_state *y, double *heat_in);

@@ -21,6 +21,7 @@ typedef struct stage {
   const cf_phase_state *start, *in, *out;
   const cf_real *W;
   double dt, weight; /* of F in this stage, and in the whole step */
+  bool leaks;
   cf_real keep, pass, d;
   cf_real per_tau, per_tau_1, f, rest; /* 1/tau_eta, 1/tau_1, F, 1 - F */
   cf_real per_tau_2, f_t, rest_t, spread, latent;
@@ -181,8 +182,8 @@ static double integral(const cf_phase *p, const cf_cell f) {
   return cf_sweep_range(&p->grid->box, p->grid->threads, f.at, p->sums).sum * cf_grid_volume(p->grid);
 }
 
-/* Rate at which the integral of T grows through held walls. */
-static double through_walls(const cf_phase *p, const cf_phase_state *y) {
+/* Rate at which the integral of T grows through held walls, and by what a flow took of w. */
+static double through_walls(const cf_phase *p, const cf_phase_state *y, const bool leaks) {
   const cf_box *box = &p->grid->box;
   double sum = 0;
   bool any = false;
@@ -197,7 +198,7 @@ static double through_walls(const cf_phase *p, const cf_phase_state *y) {
           sum += (double)(y->T.at[q + w.outward] - y->T.at[q]);
         }
     }
-  if (!any) return 0;
+  if (!any) return leaks && p->has_w ? integral(p, y->w) : 0;
   const double now = sum * p->p.D / (p->grid->h * p->grid->h) * cf_grid_volume(p->grid);
   return p->has_w ? integral(p, y->w) + p->p.f_t * now : now;
 }
@@ -220,21 +221,28 @@ static void run_stage(cf_phase *p, const double t, const double keep, stage *s, 
   cf_wall_values_sample(&p->T_walls, t);
   cf_phase_ghosts(p, s->in->eta);
   cf_wall_ghosts(&p->T_walls, s->in->T);
-  const double rate = through_walls(p, s->in);
+  const double rate = through_walls(p, s->in, s->leaks);
   if (heat_in != NULL) *heat_in += s->weight * rate;
   if (q->form == CF_PHASE_PAPER) cf_phase_each_row(p, CF_PHASE_X_1, s->in->eta, keep_X_1, NULL);
   cf_phase_each_row(p, q->form == CF_PHASE_PAPER ? CF_PHASE_X_2 : CF_PHASE_X, s->in->eta, visit, s);
 }
 
-static void three_stages(cf_phase *p, const double t, const double dt, const cf_cell W,
+static void three_stages(cf_phase *p, const double t, const double dt, const cf_phase_explicit *how,
                          const cf_phase_state *y, double *heat_in) {
+  const cf_real *W = how->W.at;
   const cf_phase_state *a = &p->stage[0], *b = &p->stage[1];
-  run_stage(p, t, 0, &(stage){.start = y, .in = y, .out = a, .W = W.at, .dt = dt, .weight = dt / 6}, heat_in);
-  run_stage(p, t + dt, 0.75,
-            &(stage){.start = y, .in = a, .out = b, .W = W.at, .dt = dt / 4, .weight = dt / 6}, heat_in);
-  run_stage(p, t + dt / 2, 1.0 / 3,
-            &(stage){.start = y, .in = b, .out = y, .W = W.at, .dt = 2 * dt / 3, .weight = 2 * dt / 3},
+  run_stage(p, t, 0,
+            &(stage){.start = y, .in = y, .out = a, .W = W, .leaks = how->leaks, .dt = dt, .weight = dt / 6},
             heat_in);
+  run_stage(
+      p, t + dt, 0.75,
+      &(stage){.start = y, .in = a, .out = b, .W = W, .leaks = how->leaks, .dt = dt / 4, .weight = dt / 6},
+      heat_in);
+  run_stage(
+      p, t + dt / 2, 1.0 / 3,
+      &(stage){
+          .start = y, .in = b, .out = y, .W = W, .leaks = how->leaks, .dt = 2 * dt / 3, .weight = 2 * dt / 3},
+      heat_in);
 }
 
 static void copy_cell(const cf_phase *p, const cf_cell from, const cf_cell to) {
@@ -251,10 +259,11 @@ cf_status cf_phase_step_explicit(cf_phase *p, const double t, const double dt, c
   const cf_phase_state *now = y, *next = &p->stage[0];
   for (int i = 0; i < how->substeps; ++i) {
     if (how->order == 3) {
-      three_stages(p, t + i * sub, sub, how->W, y, heat_in);
+      three_stages(p, t + i * sub, sub, how, y, heat_in);
       continue;
     }
-    stage s = {.start = now, .in = now, .out = next, .W = how->W.at, .dt = sub, .weight = sub};
+    stage s = {
+        .start = now, .in = now, .out = next, .W = how->W.at, .leaks = how->leaks, .dt = sub, .weight = sub};
     run_stage(p, t + i * sub, 0, &s, heat_in);
     const cf_phase_state *done = next;
     next = now;

@@ -19,14 +19,20 @@ double cf_phase_solid(const cf_phase *p, const cf_cell eta) {
   return cf_sweep_range(&p->grid->box, p->grid->threads, eta.at, p->sums).sum * cf_grid_volume(p->grid);
 }
 
+CF_CLONES static double heat_in_row(const int n, const double latent, const cf_real *T, const cf_real *eta) {
+  double lane[CF_SUM_LANES] = {0};
+  int i = 0;
+  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
+    for (int l = 0; l < CF_SUM_LANES; ++l) lane[l] += (double)T[i + l] - latent * (double)eta[i + l];
+  for (int l = 0; i < n; ++i, ++l) lane[l] += (double)T[i] - latent * (double)eta[i];
+  return cf_sum_lanes(lane);
+}
+
 double cf_phase_heat_content(const cf_phase *p, const cf_phase_state *y) {
   const cf_box *box = &p->grid->box;
-  CF_PARALLEL_ROWS (box, p->grid->threads, r) {
-    const cf_real *T = y->T.at + cf_box_row(box, r), *eta = y->eta.at + cf_box_row(box, r);
-    double lane[CF_SUM_LANES] = {0};
-    for (int i = 0; i < box->n[0]; ++i) lane[i % CF_SUM_LANES] += (double)T[i] - p->p.latent * (double)eta[i];
-    p->sums[r] = cf_sum_lanes(lane);
-  }
+  CF_PARALLEL_ROWS (box, p->grid->threads, r)
+    p->sums[r] =
+        heat_in_row(box->n[0], p->p.latent, y->T.at + cf_box_row(box, r), y->eta.at + cf_box_row(box, r));
   return sum_rows(p);
 }
 
@@ -135,21 +141,32 @@ typedef struct crossings {
   int along, axis; /* a; the axis to reach along, or -1 */
 } crossings;
 
-CF_KERNEL double reach_at(const crossings *c, const int i) {
-  const double low = (double)c->eta[i] - 0.5, high = (double)c->next[i] - 0.5;
-  const bool crosses = (low < 0) != (high < 0);
-  const double part = c->h * (low / (crosses ? low - high : 1));
-  const double x = c->first[0] + i * c->h + (c->along == 0 ? part : 0);
-  const double y = c->first[1] + (c->along == 1 ? part : 0), z = c->first[2] + (c->along == 2 ? part : 0);
-  const double reach = c->axis < 0 ? x * x + (y * y + z * z) : c->axis == 0 ? x : c->axis == 1 ? y : z;
-  return crosses ? reach : -INFINITY;
+/* How far the place (x, y, z) from where the reach is counted is: squared, or along the axis. */
+CF_KERNEL double reach_of(const int axis, const double x, const double y, const double z) {
+  return axis < 0 ? x * x + (y * y + z * z) : axis == 0 ? x : axis == 1 ? y : z;
 }
 
-CF_CLONES static double reach_in_row(const int n, const crossings *c) {
-  double most = -INFINITY;
+/* Of the crossing after cell i, or -INFINITY. */
+static double reach_at(const crossings *c, const int i) {
+  const double low = (double)c->eta[i] - 0.5, high = (double)c->next[i] - 0.5;
+  if ((low < 0) == (high < 0)) return -INFINITY;
+  const double part = c->h * (low / (low - high));
+  return reach_of(c->axis, c->first[0] + i * c->h + (c->along == 0 ? part : 0),
+                  c->first[1] + (c->along == 1 ? part : 0), c->first[2] + (c->along == 2 ? part : 0));
+}
+
+/* What no crossing in the row exceeds, without a division: from both ends of the edges that have one. */
+CF_CLONES static double bound_of_row(const int n, const crossings *c) {
+  const double dx = c->along == 0 ? c->h : 0, dy = c->along == 1 ? c->h : 0, dz = c->along == 2 ? c->h : 0;
+  const double y = c->first[1], z = c->first[2], none = -INFINITY;
+  const cf_real half = (cf_real)0.5;
+  double most = none;
 #pragma omp simd reduction(max : most)
   for (int i = 0; i < n; ++i) {
-    const double reach = reach_at(c, i);
+    const double x = c->first[0] + i * c->h;
+    const double here = reach_of(c->axis, x, y, z), there = reach_of(c->axis, x + dx, y + dy, z + dz);
+    const double far = here > there ? here : there;
+    const double reach = (c->eta[i] < half) != (c->next[i] < half) ? far : none;
     most = reach > most ? reach : most;
   }
   return most;
@@ -167,34 +184,55 @@ static crossings crossings_of(const cf_phase *p, const cf_real *eta, const doubl
   return c;
 }
 
+/* Into `far` and *i the farthest crossing of row r, if it is farther than *best. */
+static void look_in_row(const cf_phase *p, const crossings *like, const double from[3], const ptrdiff_t r,
+                        double *best, crossings *far, int *at) {
+  for (int a = 0; a < p->grid->box.dim; ++a) {
+    int n;
+    crossings c = crossings_of(p, like->eta, from, r, a, &n);
+    c.axis = like->axis;
+    for (int i = 0; i < n; ++i) {
+      const double reach = reach_at(&c, i);
+      if (!(reach > *best)) continue;
+      *best = reach;
+      *far = c;
+      *at = i;
+    }
+  }
+}
+
+static double bound_of(const cf_phase *p, const crossings *like, const double from[3], const ptrdiff_t r) {
+  const cf_box *box = &p->grid->box;
+  double most = -INFINITY;
+  for (int a = 0; a < box->dim; ++a) {
+    int n;
+    crossings c = crossings_of(p, like->eta, from, r, a, &n);
+    const ptrdiff_t next = a == 1 ? 1 : a == 2 ? box->n[1] : 0;
+    if (n == 0 || (p->sums[r] < 0.5 && p->sums[r + next] < 0.5)) continue;
+    c.axis = like->axis;
+    most = fmax(most, bound_of_row(n, &c));
+  }
+  return most;
+}
+
 double cf_phase_tip(const cf_phase *p, const cf_cell eta, const double from[3], const int axis,
                     double where[3]) {
   const cf_box *box = &p->grid->box;
   const ptrdiff_t rows = cf_box_rows(box);
-  double *reach = p->sums + rows, best = 0;
+  const crossings like = {.eta = eta.at, .axis = axis};
+  double *bound = p->sums + rows, best = 0;
   crossings far = {.first = {0}};
+  ptrdiff_t farthest = 0;
+  int i = 0;
   for (int b = 0; b < 3; ++b) where[b] = b < box->dim ? from[b] : 0;
   cf_phase_find_rows(p, eta);
-  for (int a = 0; a < box->dim; ++a) {
-    const ptrdiff_t next = a == 1 ? 1 : a == 2 ? box->n[1] : 0;
-    CF_PARALLEL_ROWS (box, p->grid->threads, r) {
-      int n;
-      crossings c = crossings_of(p, eta.at, from, r, a, &n);
-      c.axis = axis;
-      reach[r] = -INFINITY;
-      if (n > 0 && (p->sums[r] >= 0.5 || p->sums[r + next] >= 0.5)) reach[r] = reach_in_row(n, &c);
-    }
-    for (ptrdiff_t r = 0; r < rows; ++r) {
-      int n;
-      if (!(reach[r] > best)) continue;
-      best = reach[r];
-      far = crossings_of(p, eta.at, from, r, a, &n);
-      far.axis = axis;
-    }
-  }
+  CF_PARALLEL_ROWS (box, p->grid->threads, r) bound[r] = bound_of(p, &like, from, r);
+  for (ptrdiff_t r = 0; r < rows; ++r)
+    if (bound[r] > bound[farthest]) farthest = r;
+  look_in_row(p, &like, from, farthest, &best, &far, &i);
+  for (ptrdiff_t r = 0; r < rows; ++r)
+    if (bound[r] > best && r != farthest) look_in_row(p, &like, from, r, &best, &far, &i);
   if (!(best > 0)) return 0;
-  int i = 0;
-  while (reach_at(&far, i) != best) ++i;
   for (int b = 0; b < box->dim; ++b) where[b] = from[b] + far.first[b] + (b == 0 ? i * far.h : 0);
   where[far.along] += far.h * ((double)far.eta[i] - 0.5) / ((double)far.eta[i] - (double)far.next[i]);
   return axis < 0 ? sqrt(best) : best;

@@ -96,17 +96,18 @@ CF_KERNEL cf_vec central_at(const int dim, const central *c, const ptrdiff_t p) 
                   dim == 3 ? c->star[2] * (c->eta[p + s[2]] - c->eta[p - s[2]]) : 0};
 }
 
-CF_KERNEL cf_facing facing_of(const central *c, const ptrdiff_t p) {
-  return c->e != NULL ? (cf_facing){c->e[p], c->C[p], c->S[p]} : c->facing;
+CF_KERNEL cf_facing facing_of(const int varies, const central *c, const ptrdiff_t p) {
+  return varies ? (cf_facing){c->e[p], c->C[p], c->S[p]} : c->facing;
 }
 
 /* 1 - delta (1 - sum v_i^4/|v|^4), turned in the plane: sum = rho^4 (3 + cos 4 (theta - theta_0))/4 + v_z^4. Where
  * there is no gradient it does not matter, as f = 0 there. */
-CF_KERNEL void beta_row(const int dim, const int n, const central *c, const ptrdiff_t start) {
+CF_KERNEL void beta_row(const int dim, const int varies, const int n, const central *c,
+                        const ptrdiff_t start) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
     const cf_vec v = central_at(dim, c, start + i);
-    const cf_facing f = facing_of(c, start + i);
+    const cf_facing f = facing_of(varies, c, start + i);
     const cf_real xx = v.x * v.x, yy = v.y * v.y, zz = v.z * v.z, rho2 = (xx + yy) + (cf_real)1e-20;
     const cf_real u = (xx - yy) / rho2, w = 2 * (v.x * v.y) / rho2;
     const cf_real cosine = (u * u - w * w) * f.C + 2 * (u * w) * f.S, size2 = rho2 + zz;
@@ -114,38 +115,39 @@ CF_KERNEL void beta_row(const int dim, const int n, const central *c, const ptrd
     c->out[i] = 1 - f.e * (1 - (flat * flat * (3 + cosine) / 4 + axis * axis));
   }
 }
-CF_CLONED(beta_row, const central *, const ptrdiff_t)
+CF_CLONED_FORMS(beta_row, const central *, const ptrdiff_t)
 
-CF_KERNEL void square_loop(const int dim, const int facets, const int n, const central *c,
+CF_KERNEL void square_loop(const int dim, const int facets, const int varies, const int n, const central *c,
                            const ptrdiff_t start) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
     cf_vec B;
-    const cf_real A =
-        cf_anisotropy_at(dim, facets, c->law, facing_of(c, start + i), central_at(dim, c, start + i), &B);
+    const cf_real A = cf_anisotropy_at(dim, facets, c->law, facing_of(varies, c, start + i),
+                                       central_at(dim, c, start + i), &B);
     c->out[i] = A * A;
   }
 }
 
-CF_KERNEL void square_row(const int dim, const int n, const central *c, const ptrdiff_t start) {
+CF_KERNEL void square_row(const int dim, const int varies, const int n, const central *c,
+                          const ptrdiff_t start) {
   switch (c->law->facets) {
     case CF_FACETS_NONE:
-      square_loop(dim, CF_FACETS_NONE, n, c, start);
+      square_loop(dim, CF_FACETS_NONE, varies, n, c, start);
       break;
     case CF_FACETS_FOUR:
-      square_loop(dim, CF_FACETS_FOUR, n, c, start);
+      square_loop(dim, CF_FACETS_FOUR, varies, n, c, start);
       break;
     case CF_FACETS_SIX:
-      square_loop(dim, CF_FACETS_SIX, n, c, start);
+      square_loop(dim, CF_FACETS_SIX, varies, n, c, start);
       break;
     case CF_FACETS_CUBIC:
-      square_loop(dim, CF_FACETS_CUBIC, n, c, start);
+      square_loop(dim, CF_FACETS_CUBIC, varies, n, c, start);
       break;
     default:
-      square_loop(dim, CF_FACETS_ANY, n, c, start);
+      square_loop(dim, CF_FACETS_ANY, varies, n, c, start);
   }
 }
-CF_CLONED(square_row, const central *, const ptrdiff_t)
+CF_CLONED_FORMS(square_row, const central *, const ptrdiff_t)
 
 static central central_of(const cf_phase *p, const cf_real *eta, cf_real *out) {
   central c = {
@@ -163,12 +165,12 @@ void cf_phase_beta_row(const cf_phase *p, const cf_real *eta, const ptrdiff_t st
   central c = central_of(p, eta, beta);
   if (c.e == NULL)
     c.facing = (cf_facing){(cf_real)p->p.drive_strength, (cf_real)p->drive_C, (cf_real)p->drive_S};
-  beta_row_by_dim(p->grid->box.dim, p->grid->box.n[0], &c, start);
+  beta_row_by_form(p->grid->box.dim, c.e != NULL, p->grid->box.n[0], &c, start);
 }
 
 void cf_phase_A2_row(const cf_phase *p, const cf_real *eta, const ptrdiff_t start, cf_real *A2) {
   const central c = central_of(p, eta, A2);
-  square_row_by_dim(p->grid->box.dim, p->grid->box.n[0], &c, start);
+  square_row_by_form(p->grid->box.dim, c.e != NULL, p->grid->box.n[0], &c, start);
 }
 
 cf_phase_react cf_phase_react_of(const cf_phase *p, const cf_phase_rows *rows, const cf_real *eta,

@@ -189,7 +189,7 @@ static void euler_is_of_first_order_and_the_default_of_third(void **state) {
     for (int i = 0; i < 3; ++i) {
       crystal_make(&c[i], 2, (int[3]){48, 48, 1}, 0.03, &q, NULL, false, 1);
       crystal_ball(&c[i], 0.15, q.width, -1);
-      const cf_phase_explicit how = {i == 2 ? 3 : order, 1, {NULL}};
+      const cf_phase_explicit how = {.order = i == 2 ? 3 : order, .substeps = 1};
       const int steps = i == 2 ? 1600 : i == 0 ? 200 : 400;
       for (int s = 0; s < steps; ++s)
         OK(cf_phase_step_explicit(c[i].p, 0, 0.02 / steps, &how, &c[i].y, NULL));

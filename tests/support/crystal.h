@@ -71,7 +71,7 @@ static inline void crystal_ball(const crystal *c, const double radius, const dou
 }
 
 static inline void crystal_grow(const crystal *c, const double dt, const int steps) {
-  const cf_phase_explicit how = {3, 1, {NULL}};
+  const cf_phase_explicit how = {.order = 3, .substeps = 1};
   for (int s = 0; s < steps; ++s) OK(cf_phase_step_explicit(c->p, s * dt, dt, &how, &c->y, NULL));
 }
 
