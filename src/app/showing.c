@@ -13,6 +13,7 @@
 #include "base/mem.h"
 #include "base/real.h"
 #include "io/mesh.h"
+#include "render/cloud.h"
 #include "render/colormap.h"
 #include "render/turn.h"
 
@@ -284,6 +285,27 @@ static cf_status load_particles(cf_showing *s, const int64_t number) {
   return CF_OK;
 }
 
+/* Points as the density of ink or smoke. */
+static cf_status load_cloud(cf_showing *s, const int64_t number) {
+  const double cell = s->grid.h;
+  const cf_grid coarse = s->grid;
+  cf_path path;
+  CF_TRY(cf_path_make(&path, "%s/particles_%06" PRId64 ".vtkhdf", s->folder, number));
+  CF_TRY(cf_points_read(&s->points, path.text));
+  s->exhibit.time = s->points.time;
+  cf_turn_vectors(s->up, s->points.count, s->points.place);
+  cf_cloud_grid(&coarse, s->points.count, &s->grid);
+  CF_TRY(cf_cell_create(&s->values[0], &s->grid.box));
+  cf_cloud_density(&s->grid, cell, s->points.count, (const float(*)[3])s->points.place, s->values[0]);
+  s->exhibit.field[0] = (cf_exhibit_field){"points", "1/cell", s->values[0].at};
+  s->exhibit.fields = 1;
+  return CF_OK;
+}
+
+static bool is_cloud(const cf_showing *s) {
+  return s->scene->points.count > 0 && strcmp(s->field, "points") == 0;
+}
+
 /* The box of the scene, where no file says more. */
 static cf_status scene_grid(cf_showing *s) {
   const cf_scene_domain *d = &s->scene->domain;
@@ -313,7 +335,7 @@ cf_status cf_showing_load(cf_showing *s, const int64_t number) {
       status = cf_flock_load(s, number);
       break;
     default:
-      status = load_fields(s, number);
+      status = is_cloud(s) ? load_cloud(s, number) : load_fields(s, number);
   }
   if (status == CF_OK && s->scene->render.plot.count > 0) status = cf_showing_inset(s);
   return status;

@@ -44,7 +44,10 @@
     "field: a plane in colours with axes; ink: in a white tank; smoke: under lights; crystal: a flat one "  \
     "between two coloured lights; coral: a surface under water; mesh: in a studio; gel: translucent; "      \
     "particles: balls; cards: flakes and snow; auto: what suits the model")                                 \
-  P(field, text, "", "", "", "What is shown, or colours a surface; left out: that of output.preview")       \
+  P(field, text, "", "", "",                                                                                \
+    "What is shown, or colours a surface; left out: that of output.preview. Styles field, ink and smoke "   \
+    "show `points` as "                                                                                     \
+    "the density they have")                                                                                \
   P(surface, text, "", "", "",                                                                              \
     "The field whose surface is shown where the run wrote no mesh; left out: output.preview.field")         \
   P(level, number, "0.5", "", "(-inf, inf)", "The value of that field on the surface")                      \
