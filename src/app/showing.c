@@ -317,9 +317,18 @@ static cf_status scene_grid(cf_showing *s) {
   return upright(s, &g);
 }
 
+/* When frame `number` is, for files that do not say it. */
+static double time_of(const cf_scene *scene, const int64_t number) {
+  const double time = scene->time.frames > 0 ? (double)number / scene->time.frames
+                      : number > 0           ? INFINITY
+                                             : 0;
+  return CF_MIN(time, scene->time.end);
+}
+
 cf_status cf_showing_load(cf_showing *s, const int64_t number) {
   unload(s);
   s->exhibit.title = s->scene->title[0] != '\0' ? s->scene->title : NULL;
+  s->exhibit.time = time_of(s->scene, number);
   CF_TRY(scene_grid(s));
   cf_status status;
   switch (s->look.style) {

@@ -55,6 +55,9 @@ cf_status cf_gel_check(const cf_scene *scene, double dt, const cf_page *page);
 cf_mpm_material cf_gel_material(const cf_scene *scene, int body);
 cf_status cf_gel_lattice(const cf_scene *scene, cf_grid *lattice, int offset[3]);
 
+/* gel_bend.c: the curvature of the first body, 1/m. */
+double cf_gel_curvature(const cf_gel *g);
+
 /* gel_show.c */
 bool cf_gel_shows(const cf_scene *scene, const char *name);
 bool cf_gel_derived(const void *model, int i, cf_derived *field);

@@ -125,24 +125,42 @@ double cf_gel_memory(const cf_scene *scene) {
   return count * (numbers * sizeof(cf_real) + 24) + cells * (8 + 24) * sizeof(cf_real) + 32e6;
 }
 
+/* The stretch s at which a free body with S = 1 is at rest, 2 mu (s - 1) s + lambda (s^d - 1) s^d = chi (fixed corotated; a
+ * little less for neo-Hookean): the left side grows with s. */
+static double swollen(const cf_mpm_material *m, const int dim) {
+  double low = 1, high = 2;
+  const double d = dim;
+  while (high < 1e6 &&
+         2 * m->mu * (high - 1) * high + m->lambda * (pow(high, d) - 1) * pow(high, d) < m->swelling)
+    low = high, high *= 2;
+  for (int i = 0; i < 60; ++i) {
+    const double s = (low + high) / 2;
+    if (2 * m->mu * (s - 1) * s + m->lambda * (pow(s, d) - 1) * pow(s, d) < m->swelling)
+      low = s;
+    else
+      high = s;
+  }
+  return low;
+}
+
 cf_status cf_gel_check(const cf_scene *scene, const double dt, const cf_page *page) {
   char text[160];
-  double fastest = 0, stiffest = 0;
+  double fastest = 0, longest = 1;
   for (int i = 0; i < scene->gel.bodies.count; ++i) {
     const cf_mpm_material m = cf_gel_material(scene, i);
     fastest = CF_MAX(fastest, sqrt((m.lambda + 2 * m.mu + m.swelling) / m.density));
-    stiffest = CF_MAX(stiffest, m.swelling / (m.lambda + 2 * m.mu));
+    longest = CF_MAX(longest, swollen(&m, scene->dim));
   }
   snprintf(text, sizeof text, "about %.3g", cf_gel_count(scene));
   page->row(page->context, "particles", text);
   snprintf(text, sizeof text, "%.4g m/s in a body full of water", fastest);
   page->row(page->context, "speed of sound", text);
-  snprintf(text, sizeof text, "%.3g %% a side if held flat", 100 * stiffest);
+  snprintf(text, sizeof text, "%.3g %% a side when full and free", 100 * (longest - 1));
   page->row(page->context, "swells by", text);
   const double limit = 0.5 * scene->spacing / fastest;
   snprintf(text, sizeof text, "%.4g s", limit);
   page->row(page->context, "explicit limit", text);
-  if (scene->gel.implicitness < 0.5 && dt > 1.1 * limit) {
+  if (scene->gel.implicitness < 0.5 && !isnan(scene->time.dt) && dt > 1.1 * limit) {
     snprintf(text, sizeof text,
              "dt = %g s is above the explicit limit %.3g s: take dt: auto or gel.implicitness: 1", dt, limit);
     page->warn(page->context, text);

@@ -123,7 +123,7 @@ static const char *const metric[] = {"water",          "error_water", "mean_satu
                                      "max_saturation", "volume",      "min_J",           "max_J",
                                      "kinetic",        "momentum_x",  "momentum_y",      "momentum_z",
                                      "angular_x",      "angular_y",   "angular_z",       "center_x",
-                                     "center_y",       "center_z",    "uptake"};
+                                     "center_y",       "center_z",    "uptake",          "curvature"};
 
 int cf_gel_metric_names(const void *model, cf_metric *names) {
   (void)model;
@@ -153,6 +153,7 @@ void cf_gel_metrics(const void *model, double *values) {
                         s.center[0],
                         s.center[1],
                         s.center[2],
-                        g->water.entered - g->water.left};
+                        g->water.entered - g->water.left,
+                        cf_gel_curvature(g)};
   memcpy(values, all, sizeof all);
 }
