@@ -7,6 +7,9 @@ grow jet-z-fourier scene.yaml --set diffusion.tau=0 --set "title='Fourier'"
 grow jet-z-none scene.yaml --set diffusion.k=0 --set "title='No diffusion'"
 "$program" sheet "$out"/jet-* -o "$out/jet.png" --columns 7
 show jet.png 1600 jet
-grow drop drop.yaml
-convert "$out"/drop/preview_0000??.png -resize 50% +append "$out/drop.png"
+grow drop drop.yaml --precision single --set points.0.count=2000000
+for frame in 3 5 7 9 12; do
+  "$program" render "$out/drop" --frame $frame --field points --size 440x880 -o "$out/drop-$(printf %02d $frame).png"
+done
+convert "$out"/drop-??.png +append "$out/drop.png"
 show drop.png 1600
