@@ -139,6 +139,8 @@ static void print_columns(const column *c, const int columns) {
   }
   printf("\n%-26s", "total");
   for (int v = 0; v < columns; ++v) printf("%10.2f", 1e3 * c[v].total);
+  printf("\n%-26s", "diffusion, % of it");
+  for (int v = 0; v < columns; ++v) printf("%10.1f", 100 * c[v].seconds[CF_STAGE_DIFFUSE] / c[v].total);
   printf("\n%-26s", "memory, MB");
   for (int v = 0; v < columns; ++v) printf("%10.1f", c[v].bytes * 1e-6);
   printf("\n");
