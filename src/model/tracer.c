@@ -128,8 +128,7 @@ static cf_status begin_velocity(cf_tracer *m) {
   if (status != CF_NOT_FINITE) return status;
   char why[CF_SENTENCE_MAX];
   snprintf(why, sizeof why, "%s", cf_status_sentence());
-  return cf_scene_fail_at(s->scene, "velocity",
-                          "%s: is there a division by 0, or a root of a negative number?", why);
+  return cf_scene_fail_at(s->scene, "velocity", "at time 0: %s", why);
 }
 
 static cf_status register_velocity(const cf_tracer *m, cf_registry *r) {
