@@ -9,7 +9,8 @@ grow jet-z-none scene.yaml --set diffusion.k=0 --set "title='No diffusion'"
 show jet.png 1600 jet
 grow drop drop.yaml --precision single --set points.0.count=2000000
 for frame in 3 5 7 9 12; do
-  "$program" render "$out/drop" --frame $frame --field points --size 440x880 -o "$out/drop-$(printf %02d $frame).png"
+  "$program" render "$out/drop" --frame $frame --field points --size 340x640 --set 'render.range=[0, 320]' \
+    --set render.camera.zoom=1.3 --set 'render.camera.aim=[0, 0.128, 0]' -o "$out/drop-$(printf %02d $frame).png"
 done
 convert "$out"/drop-??.png +append "$out/drop.png"
 show drop.png 1600
