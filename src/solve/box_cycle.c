@@ -22,6 +22,9 @@
 #define PASS_SWEEPS 32
 /* A step is at least this, and at most its inverse. */
 #define LEAST_STEP 0.4
+/* The residual may grow so much at first. It grows more where coarse levels are far wrong about something: a neck that they
+ * do not know of. */
+#define MOST_GROWTH 2
 
 /* --- passes ------------------------------------------------------------------------------------------- */
 
@@ -177,8 +180,9 @@ static void take_form_sums(const cf_box_solver *f, cf_box_iteration *it) {
 static void choose_step(const cf_box_solver *f, const double before, cf_box_iteration *it) {
   const double product = (sum_of(f, CF_SUM_BLACK) + sum_of(f, CF_SUM_RED)) * it->scale * it->scale;
   const double change = before - 2 * product + it->rr;
-  if (change > 0)
-    it->step = CF_MAX(LEAST_STEP, CF_MIN(it->step * (before - product) / change, 1 / LEAST_STEP));
+  const double best = change > 0 ? it->step * (before - product) / change : it->step;
+  it->overshoots = it->rate > MOST_GROWTH;
+  it->step = CF_MAX(LEAST_STEP, CF_MIN(best, 1 / LEAST_STEP));
 }
 
 /* The last step of every pass that corrects x. */

@@ -46,6 +46,7 @@ typedef struct cf_box_iteration {
   double shift, lift; /* FORM takes shift from b, the next pass adds lift to x */
   double lifted;      /* the largest lift so far: x has its round-off */
   double step;        /* in a region: how much of the next correction to take */
+  bool overshoots;    /* the latest cycle did harm that no step mends */
   bool ready;         /* the first part of the next cycle is done */
 } cf_box_iteration;
 

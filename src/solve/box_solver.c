@@ -13,6 +13,9 @@
 /* The polynomials' bound holds for the error; a pass aims so much below what is asked of the residual, since a second
  * pass costs more than a half sweep. */
 #define PASS_MARGIN 0.25
+/* In a region: with steps chosen anew, cycles gain more and less in turn. */
+#define WINDOW    4
+#define LOITERING 0.35
 /* What rounding leaves of the residual that a recursion started from; a new start is due well before. */
 #define RECURSION_FLOOR 5e-7
 #define RECURSION_TURN  2e-5
@@ -215,6 +218,14 @@ static void settle_mean(const cf_box_solver *f, const cf_helmholtz *A, const cf_
   if (!f->singular) cf_box_form(f, A, b, x, it);
 }
 
+/* Whether the latest WINDOW cycles have gained too little for conjugate gradients not to be the better choice; not so in the
+ * first few, which go unevenly. */
+static bool loiters(const double rr, const int iterations, double lately[WINDOW]) {
+  const double before = lately[iterations % WINDOW];
+  lately[iterations % WINDOW] = rr;
+  return iterations > WINDOW && rr > pow(LOITERING, 2 * WINDOW) * before;
+}
+
 /* --- all of it ---------------------------------------------------------------------------------------- */
 
 /* One pass; the recursion of the residual starts anew where it has gained so much that rounding shows. False: there is
@@ -245,6 +256,7 @@ static cf_status run(const cf_box_solver *f, const cf_helmholtz *A, const cf_cel
   const cf_level *l = &A->level[0];
   const double cells = cells_of(f);
   cf_box_iteration it = {.rate = 0.1, .step = 1};
+  double lately[WINDOW] = {0};
   int slow = 0;
   report->levels = f->depth;
   it.scale = scale_for(f, l, b, x);
@@ -270,10 +282,14 @@ static cf_status run(const cf_box_solver *f, const cf_helmholtz *A, const cf_cel
     CF_TRY(check_sums(&it));
     hold_mean(f, cells, mean, &it);
     slow = it.rr > SLOW * SLOW * before ? slow + 1 : 0;
+    if (f->varied != NULL && (it.overshoots || loiters(it.rr, report->iterations, lately))) slow = SLOW_TIMES;
   }
   *finished = slow < SLOW_TIMES;
   if (f->varied != NULL) /* conjugate gradients know better than to take rounding for the end */
     *finished = it.bb == 0 || it.rr <= enough || report->iterations >= o->max_iterations;
+  if (!*finished && it.overshoots)
+    cf_varied_recall(f->varied, x); /* what is far off is far off in few places: worse
+                                                                    * to start from than nothing */
   settle_mean(f, A, b, x, o->tolerance, &it);
   report->residual = it.bb > 0 ? sqrt(it.rr / it.bb) : 0;
   const double rounding = CF_MIN(floor_of(f, &it), ROUNDING_PASSES * it.bb);
@@ -291,6 +307,7 @@ cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, 
   f->varied->band_sweeps = BAND_SWEEPS;
   cf_pockets_remove_means(pockets, l, b);
   cf_pockets_keep_means(pockets, l, x);
+  if (f->depth > 1) cf_varied_keep(f->varied, x);
   CF_TRY(run(f, A, b, o, x, report, finished));
   cf_pockets_restore_means(pockets, l, x);
   return CF_OK;

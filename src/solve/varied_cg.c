@@ -13,6 +13,7 @@
  * of which only runs are visited has the bits of the whole row with zeros elsewhere.
  */
 #include <math.h>
+#include <string.h>
 
 #include "grid/sweep.h"
 #include "solve/varied.h"
@@ -264,6 +265,20 @@ void cf_varied_clear(const cf_varied *v, const cf_cell x) {
         for (ptrdiff_t i = run->low, p = cf_box_at(&l->box, 0, j, k); i < run->high; ++i)
           if (cf_coupled_has(l, p + i)) x.at[p + i] = 0;
 }
+
+static void copy(const cf_varied *v, const cf_cell from, const cf_cell to) {
+  const cf_coupled *l = &v->level[0];
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k)
+      CF_TILE_RUNS (l, w, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        memcpy(to.at + p, from.at + p, (size_t)(run->high - run->low) * sizeof(cf_real));
+      }
+}
+
+void cf_varied_keep(const cf_varied *v, const cf_cell x) { copy(v, x, v->p); }
+
+void cf_varied_recall(const cf_varied *v, const cf_cell x) { copy(v, v->p, x); }
 
 /* --- the iteration ------------------------------------------------------------------------------------ */
 

@@ -43,4 +43,8 @@ void cf_varied_set_ghosts(const cf_varied *v, cf_cell x);
 /* x = 0 on the cells inside. */
 void cf_varied_clear(const cf_varied *v, cf_cell x);
 
+/* Puts x aside, where conjugate gradients have their direction; and back. */
+void cf_varied_keep(const cf_varied *v, cf_cell x);
+void cf_varied_recall(const cf_varied *v, cf_cell x);
+
 #endif
