@@ -572,8 +572,9 @@ cf_status cf_advect_face(cf_advect *a, const cf_walls *walls, cf_flux_rate rate,
  * half a cell away, and the face adds 2 beta_f (x_p - x_wall)/h^2: the matrix has 2 beta_f x_p/h^2, and
  * 2 beta_f x_wall/h^2 belongs to your b. Radiating walls count as insulated ones.
  *
- * The solver is flexible conjugate gradients (Polak-Ribiere) around a multigrid V-cycle, about 6 of them for six
- * digits whatever n, alpha and beta are. Any extents will do, also odd and long ones.
+ * The solver is a multigrid V-cycle, alone where alpha and beta are numbers and within flexible conjugate gradients
+ * (Polak-Ribiere) where they vary: about 6 of them for six digits whatever n, alpha and beta are. Any extents will do, also
+ * odd and long ones.
  * ===================================================================================================== */
 
 /* --- which cells -------------------------------------------------------------------------------------------- *
@@ -632,12 +633,13 @@ void cf_helmholtz_destroy(cf_helmholtz *A);
 
 /* Coefficients may change from step to step; they must be set once before anything below. beta's faces on the
  * high side of a periodic axis are set to those on its low side. Fields cost the hierarchy their own memory,
- * taken when first seen: CF_NO_MEMORY. CF_BAD_ARGUMENT: negative or not finite numbers. */
+ * taken when first seen: CF_NO_MEMORY. CF_BAD_ARGUMENT: negative or not finite numbers. The same numbers again in a region
+ * that has not been updated since cost nothing. */
 cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c);
 
 /* Solves A x = b to |b - A x| <= tolerance |b|; x comes as the initial guess. With alpha = 0 and no held wall
- * the solution is known up to a constant: b is made to sum to zero and x keeps the mean it came with (in a
- * region, every part that is cut off for itself). Cells that are not inside are left alone. Otherwise
+ * the solution is known up to a constant: a mean of b that the tolerance would notice is taken out of b, and x keeps the
+ * mean it came with (in a region, every part that is cut off for itself). Cells that are not inside are left alone. Otherwise
  * b is kept. Not converging is a report, not a failure. CF_NOT_FINITE: b or x holds a value that is not. */
 cf_status cf_helmholtz_solve(cf_helmholtz *A, cf_cell b, const cf_solve_options *o, cf_cell x,
                              cf_solve_report *report);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "grid/region.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -174,6 +175,8 @@ static void take_row(const row_of_cells *w, void *context) {
   }
 }
 
+static atomic_uint_least64_t updates;
+
 cf_status cf_region_update(cf_region *r) {
   taking c = {0};
   for_all_rows(r, take_row, &c);
@@ -181,5 +184,6 @@ cf_status cf_region_update(cf_region *r) {
     return cf_fail(CF_BAD_ARGUMENT, "cell (%d, %d, %d) has kind %d: must be 0 (wall) to 3 (outside)",
                    c.where[0], c.where[1], c.where[2], c.byte);
   r->inside = c.inside;
+  r->stamp = (uint64_t)atomic_fetch_add(&updates, 1) + 1;
   return CF_OK;
 }

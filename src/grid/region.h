@@ -29,6 +29,7 @@ struct cf_region {
   cf_cell value;         /* of held cells */
   const cf_tiles *tiles; /* NULL: every cell of the box is looked at */
   ptrdiff_t inside;      /* cells, as of the latest update */
+  uint64_t stamp;        /* of the latest update: no two updates of any regions have the same */
 };
 
 /* All cells inside; with tiles (which must outlive it) none is, and cells in tiles that leave must be made walls again

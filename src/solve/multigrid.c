@@ -203,13 +203,17 @@ static cf_status set_around(cf_helmholtz *A, const cf_coefficients *c) {
   }
   if (A->around == NULL) CF_TRY(cf_box_solver_create_around(&A->around, A, A->varied));
   A->around_tiles = tiles;
-  return cf_box_solver_set_around(A->around, A, c->alpha, c->beta, &A->in_box);
+  CF_TRY(cf_box_solver_set_around(A->around, A, c->alpha, c->beta, &A->in_box));
+  A->around_is_set = true;
+  return CF_OK;
 }
 
 cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
   if (!(c->alpha >= 0) || !(c->beta >= 0) || !isfinite(c->alpha) || !isfinite(c->beta))
     return cf_fail(CF_BAD_ARGUMENT, "alpha = %g, beta = %g: must be finite and not negative", c->alpha,
                    c->beta);
+  if (A->is_varied && A->around_is_set && cf_varied_has(A->varied, c)) return CF_OK;
+  A->around_is_set = false;
   A->is_varied = c->alpha_at != NULL || c->beta_at != NULL || c->region != NULL;
   if (A->is_varied) {
     A->in_box = A->singular = false;

@@ -262,7 +262,18 @@ static bool is_eliminated(const cf_varied *v) {
   return v->depth == v->levels && cf_band_work(&l->box, l->periodic) <= most;
 }
 
+static bool are_numbers_in_region(const cf_coefficients *c) {
+  return c->region != NULL && c->alpha_at == NULL && c->beta_at == NULL;
+}
+
+bool cf_varied_has(const cf_varied *v, const cf_coefficients *c) {
+  return are_numbers_in_region(c) && v->stamp == c->region->stamp && v->region == c->region &&
+         v->alpha_number == c->alpha && v->beta_number == c->beta &&
+         (c->region->tiles == NULL || v->level[0].followed == c->region->tiles->updates);
+}
+
 cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficients *c) {
+  v->stamp = 0;
   if (c->region != NULL)
     for (int a = 0; a < 3; ++a)
       if (c->region->grid.box.n[a] != A->grid.box.n[a] ||
@@ -288,7 +299,9 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
   v->depth = depth_for(v, least > 0 ? couplings / least : INFINITY);
   CF_TRY(cf_pockets_find(&v->pockets, l, least > 0));
   for (int at = 1; at < v->depth; ++at) CF_TRY(cf_coarsen(&v->level[at - 1], &v->level[at]));
-  return is_eliminated(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;
+  if (is_eliminated(v)) CF_TRY(cf_band_factor(&v->band, &v->level[v->depth - 1]));
+  v->stamp = are_numbers_in_region(c) ? c->region->stamp : 0;
+  return CF_OK;
 }
 
 int cf_varied_depth(const cf_varied *v) { return v->depth; }

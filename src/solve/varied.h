@@ -24,6 +24,9 @@ void cf_varied_destroy(cf_varied *v); /* NULL is fine */
  * another grid. */
 cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficients *c);
 
+/* Whether these coefficients are numbers in a region and what v has been given last. */
+bool cf_varied_has(const cf_varied *v, const cf_coefficients *c);
+
 /* As the functions of the same name in cattaneo.h. */
 cf_status cf_varied_solve(cf_varied *v, cf_cell b, const cf_solve_options *o, cf_cell x,
                           cf_solve_report *report);

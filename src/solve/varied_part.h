@@ -30,6 +30,8 @@ struct cf_varied {
   cf_face given_beta;     /* the caller's; NULL: the number */
   cf_real *lo[3], *hi[3]; /* 1/h^2 along each axis, with the walls of the box (level.h) */
 
+  uint64_t stamp; /* of the region that numbers are set in, 0: none */
+
   cf_cell r, p, Ap; /* of conjugate gradients */
   double *sums;     /* two for every row of the box */
 };
