@@ -281,7 +281,7 @@ static int iterations(scene *s, const double sigma, const char *what) {
 
 static const double sigmas[] = {16, 1e3, INFINITY};
 
-static void a_ball_costs_nothing(void **state) {
+static void a_ball_costs_little(void **state) {
   (void)state;
   for (int dim = 2; dim <= 3; ++dim)
     for (int kind = 0; kind < 4; ++kind) {
@@ -338,6 +338,94 @@ static void a_porous_block_takes_few_iterations(void **state) {
     for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "porous"), grain == 1 ? 24 : 15);
     scene_end(&s);
   }
+}
+
+/* --- the fast path ---------------------------------------------------------------------------------------- */
+
+/* Kinds in random grains; walls of any kind. */
+static void random_grains(cf_region *r, const int grain, const double solid, const double known) {
+  const cf_box *b = &r->grid.box;
+  unsigned char kind[40 * 40 * 40];
+  for (int q = 0; q < 40 * 40 * 40; ++q) {
+    const double u = test_random(&seed);
+    kind[q] = u < solid ? CF_CELL_WALL : u < solid + known ? CF_CELL_HELD : CF_CELL_INSIDE;
+    if (u >= solid && u < solid + known / 3) kind[q] = CF_CELL_OUTSIDE;
+  }
+  for (int k = 0; k < b->n[2]; ++k)
+    for (int j = 0; j < b->n[1]; ++j)
+      for (int i = 0; i < b->n[0]; ++i)
+        r->kind[cf_box_at(b, i, j, k)] = kind[i / grain + 40 * (j / grain) + 1600 * (k / grain)];
+  OK(cf_region_update(r));
+}
+
+/* The residual is formed afresh, by the operator of the other path. */
+static void the_fast_path_solves_in_regions(void **state) {
+  (void)state;
+  int fast = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int dim = 2 + round % 2, most = dim == 2 ? 70 : 22;
+    int n[3];
+    for (int a = 0; a < 3; ++a) n[a] = 14 + pick(most - 14);
+    cf_grid g;
+    cf_walls walls = {0};
+    OK(cf_grid_init(&g, dim, n, 0.1, NULL));
+    for (int a = 0; a < dim; ++a)
+      for (int side = 0; side < 2; ++side)
+        walls.kind[a][side] = round % 5 == a ? CF_WALL_PERIODIC
+                              : pick(3) == 0 ? CF_WALL_VALUE
+                                             : CF_WALL_INSULATED;
+    cf_helmholtz *A;
+    cf_region *region;
+    cf_cell x, b;
+    OK(cf_helmholtz_create(&A, &g, &walls, 0));
+    OK(cf_region_create(&region, &g));
+    OK(cf_cell_create(&x, &g.box));
+    OK(cf_cell_create(&b, &g.box));
+    random_grains(region, 3 + pick(6), 0.4 * test_random(&seed), pick(2) ? 0.1 : 0);
+    for (ptrdiff_t row = 0; row < cf_box_rows(&g.box); ++row)
+      for (int i = 0; i < n[0]; ++i)
+        b.at[cf_box_row(&g.box, row) + i] = region->kind[cf_box_row(&g.box, row) + i] == CF_CELL_INSIDE
+                                                ? (cf_real)(test_random(&seed) - 0.5)
+                                                : (cf_real)NAN;
+    const double sigma = pow(10, 4 * test_random(&seed) - 1);
+    OK(cf_helmholtz_set(A, &(cf_coefficients){.alpha = 1, .beta = sigma * 0.01, .region = region}));
+    cf_solve_report report;
+    OK(cf_helmholtz_solve(A, b, &(cf_solve_options){1e-10, 200}, x, &report));
+    assert_true(report.converged);
+    BELOW(cf_helmholtz_residual(A, x, b), 1.001e-10);
+    fast += strcmp(report.method, "multigrid-pcg") != 0 && strcmp(report.method, "pcg") != 0;
+    cf_helmholtz_destroy(A);
+    cf_region_destroy(region);
+    cf_cell_destroy(&x, &g.box);
+    cf_cell_destroy(&b, &g.box);
+  }
+  print_message("%d of 60 without conjugate gradients\n", fast);
+  assert_true(fast > 30);
+}
+
+/* One thread and two; and a region that has changed is another equation. */
+static void bits_do_not_depend_on_threads(void **state) {
+  (void)state;
+  scene s[2];
+  for (int v = 0; v < 2; ++v) {
+    scene_begin(&s[v], 3, 48, 48);
+    if (v == 0) {
+      cf_helmholtz_destroy(s[v].A);
+      s[v].g.threads = 1;
+      OK(cf_helmholtz_create(&s[v].A, &s[v].g, &(cf_walls){0}, 0));
+    }
+    slalom(&s[v], 2, 1);
+  }
+  for (int change = 0; change < 2; ++change) {
+    for (int v = 0; v < 2; ++v) {
+      if (change) s[v].region->kind[cf_box_at(&s[v].g.box, 9, 30, 20)] = CF_CELL_WALL;
+      iterations(&s[v], 100, "slalom");
+    }
+    for (ptrdiff_t row = 0; row < cf_box_rows(&s[0].g.box); ++row)
+      assert_memory_equal(s[0].x.at + cf_box_row(&s[0].g.box, row), s[1].x.at + cf_box_row(&s[1].g.box, row),
+                          48 * sizeof(cf_real));
+  }
+  for (int v = 0; v < 2; ++v) scene_end(&s[v]);
 }
 
 /* --- tiles ------------------------------------------------------------------------------------------------ */
@@ -413,9 +501,11 @@ static void tiles_give_the_bits_of_the_whole_box(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(random_regions_match_elimination),
-      cmocka_unit_test(a_ball_costs_nothing),
+      cmocka_unit_test(a_ball_costs_little),
       cmocka_unit_test(a_slalom_of_plates_costs_little),
       cmocka_unit_test(a_porous_block_takes_few_iterations),
+      cmocka_unit_test(the_fast_path_solves_in_regions),
+      cmocka_unit_test(bits_do_not_depend_on_threads),
       cmocka_unit_test(tiles_give_the_bits_of_the_whole_box),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
