@@ -224,6 +224,8 @@ static cf_status load_fields(cf_showing *s, const int64_t number) {
   for (int i = 0; i < 2 && crystal; ++i)
     if (find(&s->frame, relief[i]) != NULL) CF_TRY(add_field(s, relief[i], relief[i], 0));
   if (s->look.style != CF_STYLE_FIELD) return CF_OK;
+  if (find(&s->frame, "solid") != NULL && strcmp(main, "solid") != 0)
+    CF_TRY(add_field(s, "solid", "solid", 0));
   if (arrows[0] != '\0') {
     CF_TRY(add_field(s, arrows, "arrows_x", 0));
     CF_TRY(add_field(s, arrows, "arrows_y", 1));

@@ -204,6 +204,8 @@ static bool flow_describe(const void *model, const int line, char *text, const s
 static const char *const flow_keys[] = {"flow",    "diffusion", "advection", "fields",    "velocity",
                                         "sources", "sparse",    "points",    "obstacles", NULL};
 
+static const cf_obstacles *flow_obstacles(const void *model) { return &((const cf_flow *)model)->solids; }
+
 const cf_model cf_model_flow = {
     .name = "flow",
     .summary = "an incompressible fluid, and scalars with C-F diffusion that it carries and that move it",
@@ -220,6 +222,7 @@ const cf_model cf_model_flow = {
     .step = flow_step,
     .derived = cf_flow_derived,
     .derive = cf_flow_derive,
+    .obstacles = flow_obstacles,
     .show = cf_flow_show,
     .metric_names = cf_flow_metric_names,
     .metrics = cf_flow_metrics,

@@ -12,6 +12,7 @@
 #include "solve/helmholtz.h"
 
 struct cf_mesh;
+struct cf_obstacles;
 
 /* Where the time of a step goes; S(UPPER, as tables say it). */
 #define CF_STAGE_LIST(S)      \
@@ -111,6 +112,9 @@ typedef struct cf_model {
    * there are none. */
   bool (*derived)(const void *model, int i, cf_derived *field);
   cf_status (*derive)(void *model, int i, cf_cell out);
+
+  /* The obstacles on its grid, which frames have as the field `solid` (1 within, 0 without). NULL: it has none. */
+  const struct cf_obstacles *(*obstacles)(const void *model);
 
   /* Fills what is derived and written besides fields: derived attributes of particles. Called before a frame is
    * written. NULL: there is nothing. */

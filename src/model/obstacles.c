@@ -345,6 +345,34 @@ cf_status cf_obstacles_region(const cf_obstacles *o, const int field, cf_region 
   return cf_region_update(region);
 }
 
+/* Whether a neighbour of p is in an obstacle and p is not, or the reverse. */
+static bool is_edge(const cf_obstacles *o, const ptrdiff_t p, const int at[3]) {
+  const cf_box *b = &o->grid->box;
+  const bool here = cf_obstacles_has(o, p);
+  for (int a = 0; a < b->dim; ++a) {
+    if (at[a] > 0 && cf_obstacles_has(o, p - b->stride[a]) != here) return true;
+    if (at[a] < b->n[a] - 1 && cf_obstacles_has(o, p + b->stride[a]) != here) return true;
+  }
+  return false;
+}
+
+void cf_obstacles_show(const cf_obstacles *o, const cf_cell solid) {
+  const cf_grid *g = o->grid;
+  const cf_box *b = &g->box;
+  CF_PARALLEL_ROWS (b, g->threads, r)
+    for (int i = 0; i < b->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(b, r) + i;
+      const int at[3] = {i, (int)(r % b->n[1]), (int)(r / b->n[1])};
+      const bool here = cf_obstacles_has(o, p);
+      solid.at[p] = here;
+      if (!is_edge(o, p, at)) continue;
+      double place[3] = {0, 0, 0};
+      for (int a = 0; a < b->dim; ++a) place[a] = cf_grid_place(g, a, at[a], 0);
+      const double share = CF_MIN(CF_MAX(0.5 - cf_obstacles_distance(o, place) / g->h, 0), 1);
+      if ((share >= 0.5) == here) solid.at[p] = (cf_real)share;
+    }
+}
+
 /* --- what moves -------------------------------------------------------------------------------------------- */
 
 /* The velocity of obstacle i along an axis, at the low face of the cell (i, j, k) on it. */

@@ -94,6 +94,10 @@ void cf_obstacles_push(const cf_obstacles *o, cf_face u);
 /* Across a periodic axis the first face is the last one: the obstacle's, if either cell beside it is in one. */
 void cf_obstacles_join(const cf_obstacles *o, int axis, cf_face u);
 
+/* 1 in cells of obstacles, 0 in others; at their surface about the share of the cell that is inside, above 1/2 where its
+ * middle is. */
+void cf_obstacles_show(const cf_obstacles *o, cf_cell solid);
+
 /* The fastest that a point of an obstacle moves within the box, as placed, m/s. */
 double cf_obstacles_speed(const cf_obstacles *o);
 

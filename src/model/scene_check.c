@@ -89,6 +89,9 @@ static cf_status check_field_name(const cf_scene *scene, const char *key, const 
   const char *meant = NULL;
   const cf_model *model = cf_model_of(scene->model);
   if (strncmp(key, "output.", 7) == 0 && model->shows != NULL && model->shows(scene, name)) return CF_OK;
+  if (strncmp(key, "output.", 7) == 0 && strcmp(name, "solid") == 0 && scene->obstacles.count > 0 &&
+      model->obstacles != NULL)
+    return CF_OK;
   if (cf_scene_field_index(scene, name) >= 0 || cf_scene_flux_scalar(scene, name) >= 0) return CF_OK;
   for (int i = 0; i < scene->fields.count && meant == NULL; ++i)
     if (cf_param_distance(name, scene->fields.item[i].name) >= 0) meant = scene->fields.item[i].name;
@@ -220,10 +223,25 @@ static cf_status default_outputs(cf_scene *scene) {
   return CF_OK;
 }
 
+/* Frames around obstacles show them. */
+static cf_status add_solid(cf_scene *scene) {
+  cf_param_texts *fields = &scene->output.fields;
+  void *block;
+  if (scene->obstacles.count == 0 || cf_model_of(scene->model)->obstacles == NULL) return CF_OK;
+  for (int i = 0; i < fields->count; ++i)
+    if (strcmp(fields->item[i], "solid") == 0) return CF_OK;
+  CF_TRY(cf_config_new(scene->config, &block, (size_t)(fields->count + 1) * sizeof *fields->item));
+  if (fields->count > 0) memcpy(block, fields->item, (size_t)fields->count * sizeof *fields->item);
+  fields->item = block;
+  fields->item[fields->count++] = "solid";
+  return CF_OK;
+}
+
 static cf_status resolve_output_fields(cf_scene *scene) {
   cf_scene_output *output = &scene->output;
   char key[KEY_MAX];
   if (!output->given.fields) CF_TRY(default_outputs(scene));
+  CF_TRY(add_solid(scene));
   for (int i = 0; i < output->fields.count; ++i) {
     const char *name = output->fields.item[i];
     snprintf(key, sizeof key, "output.fields.%d", i);

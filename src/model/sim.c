@@ -11,6 +11,7 @@
 
 #include "base/mem.h"
 #include "base/threads.h"
+#include "model/obstacles.h"
 
 static cf_status register_clock(cf_sim *sim) {
   CF_TRY(cf_registry_add_numbers(&sim->registry, "time", "s", &sim->time, 1));
@@ -21,6 +22,21 @@ static cf_status register_clock(cf_sim *sim) {
 }
 
 /* --- what a frame shows ----------------------------------------------------------------------------------- */
+
+static const cf_obstacles *obstacles_of(const cf_sim *sim) {
+  const cf_obstacles *o = sim->model->obstacles != NULL ? sim->model->obstacles(sim->state) : NULL;
+  return o != NULL && o->count > 0 ? o : NULL;
+}
+
+/* Memory for the field that shows obstacles. */
+static cf_status add_solid(cf_sim *sim) {
+  cf_cell values;
+  if (obstacles_of(sim) == NULL || cf_registry_find(&sim->shown, "solid") != NULL) return CF_OK;
+  CF_TRY(cf_cell_create(&values, &sim->grid.box));
+  const cf_status s = cf_registry_add_cell(&sim->shown, "solid", "", values);
+  if (s != CF_OK) cf_cell_destroy(&values, &sim->grid.box);
+  return s;
+}
 
 /* Memory for a derived field that the scene asks for. */
 static cf_status add_derived(cf_sim *sim, const char *name) {
@@ -41,12 +57,15 @@ static cf_status make_shown(cf_sim *sim) {
   const cf_scene_output *output = &sim->scene->output;
   CF_TRY(cf_registry_init(&sim->shown, &sim->grid));
   CF_TRY(cf_registry_add_all(&sim->shown, &sim->registry));
+  CF_TRY(add_solid(sim));
   for (int i = 0; i < output->fields.count; ++i) CF_TRY(add_derived(sim, output->fields.item[i]));
   return add_derived(sim, output->preview.field);
 }
 
 cf_status cf_sim_show(cf_sim *sim) {
   cf_derived field;
+  const cf_obstacles *o = obstacles_of(sim);
+  if (o != NULL) cf_obstacles_show(o, cf_registry_find(&sim->shown, "solid")->cell);
   for (int i = 0; sim->model->derived != NULL && sim->model->derived(sim->state, i, &field); ++i) {
     const cf_entry *e = cf_registry_find(&sim->shown, field.name);
     if (e != NULL) CF_TRY(sim->model->derive(sim->state, i, e->cell));

@@ -49,7 +49,7 @@ static uint32_t fate(const cf_snowfall *s, const cf_flake_state *state, const do
   cf_flake_turn(state->turn, body_normal, n);
   const double hangs = radius * sqrt(fmax(1 - n[2] * n[2], 0));
   if (state->x[2] - hangs <= cf_snowpack_top(&s->pack, state->x[0], state->x[1])) return HAS_LANDED;
-  if (s->has_obstacles && cf_shape_distance(&s->obstacle, NULL, 0, state->x) < CAUGHT * radius)
+  if (s->obstacles.count > 0 && cf_obstacles_distance(&s->obstacles, state->x) < CAUGHT * radius)
     return HAS_LANDED;
   return state->x[2] > s->high[2] + 2 * radius && state->v[2] > 0 ? HAS_LEFT : IN_AIR;
 }
@@ -89,7 +89,7 @@ static void rest(const cf_snowfall *s, const int64_t id, const double radius, do
   const double top = cf_snowpack_top(&s->pack, x[0], x[1]), e = s->grid->h;
   double n[3] = {0, 0, 1};
   if (x[2] - radius > top + radius) {
-    cf_shape_normal(&s->obstacle, NULL, 0, x, 0.1 * e, n);
+    cf_obstacles_normal(&s->obstacles, x, 0.1 * e, n);
   } else {
     x[2] = top;
     n[0] = -(cf_snowpack_top(&s->pack, x[0] + e, x[1]) - cf_snowpack_top(&s->pack, x[0] - e, x[1])) / (2 * e);

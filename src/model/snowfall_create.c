@@ -114,13 +114,13 @@ void cf_snowfall_bind(cf_snowfall *s) {
 static double base_at(const cf_snowfall *s, const double x, const double y) {
   const double step = s->grid->h / 2;
   double at[3] = {x, y, s->high[2]};
-  if (!s->has_obstacles) return s->low[2];
-  while (at[2] > s->low[2] && cf_shape_distance(&s->obstacle, NULL, 0, at) > 0) at[2] -= step;
+  if (s->obstacles.count == 0) return s->low[2];
+  while (at[2] > s->low[2] && cf_obstacles_distance(&s->obstacles, at) > 0) at[2] -= step;
   if (at[2] <= s->low[2]) return s->low[2];
   double above = at[2] + step;
   for (int i = 0; i < 20; ++i) {
     const double half = (above + at[2]) / 2, place[3] = {x, y, half};
-    if (cf_shape_distance(&s->obstacle, NULL, 0, place) > 0)
+    if (cf_obstacles_distance(&s->obstacles, place) > 0)
       above = half;
     else
       at[2] = half;
@@ -201,6 +201,7 @@ static cf_status make(cf_snowfall *s, cf_registry *r) {
   for (int a = 0; a < 2; ++a) gust.period[a] = s->high[a] - s->low[a];
   cf_gust_create(&s->gust, &gust);
   CF_TRY(read_atlas(s));
+  CF_TRY(cf_obstacles_create(&s->obstacles, s->scene, s->grid));
   CF_TRY(make_ground(s));
   CF_TRY(make_sets(s));
   CF_TRY(register_all(s, r));
@@ -214,6 +215,7 @@ void cf_snowfall_destroy(void *model) {
   cf_particles_destroy(s->settled);
   cf_particles_destroy(s->ground);
   cf_atlas_destroy(s->atlas);
+  cf_obstacles_destroy(&s->obstacles);
   cf_free(s->shape);
   cf_free(s->change);
   cf_free(s);

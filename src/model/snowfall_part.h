@@ -9,6 +9,7 @@
 #include "grid/shape.h"
 #include "model/atlas.h"
 #include "model/model.h"
+#include "model/obstacles.h"
 #include "physics/flake.h"
 #include "physics/gust.h"
 #include "physics/snowpack.h"
@@ -38,8 +39,7 @@ typedef struct cf_snowfall {
   cf_particles *ground;   /* a point a column: its top, with `base` and `depth` */
   cf_snowpack pack;       /* on the arrays of `ground` */
   cf_real *change;
-  bool has_obstacles;
-  cf_shape obstacle;
+  cf_obstacles obstacles;
   cf_snow_ledger ledger;
   double landed; /* flakes that have, by number */
 } cf_snowfall;

@@ -340,6 +340,10 @@ static cf_status tracer_check(const cf_scene *scene, const double dt, const cf_p
 
 static cf_status tracer_resolve(cf_scene *scene) { return cf_drifters_resolve(scene); }
 
+static const cf_obstacles *tracer_obstacles(const void *model) {
+  return &((const cf_tracer *)model)->obstacles;
+}
+
 static bool tracer_shows(const cf_scene *scene, const char *name) {
   if (cf_drifters_shows(scene, name)) return true;
   return scene->given.velocity && strcmp(name, "velocity") == 0;
@@ -359,6 +363,7 @@ const cf_model cf_model_tracer = {
     .natural_dt = tracer_natural_dt,
     .describe = tracer_describe,
     .step = tracer_step,
+    .obstacles = tracer_obstacles,
     .show = tracer_show,
     .metric_names = tracer_metric_names,
     .metrics = tracer_metrics,

@@ -16,6 +16,8 @@ cf_status cf_draw_field(const cf_look *look, const cf_exhibit *e, cf_canvas *c) 
   if (look->framed) p.frame[0] = look->width, p.frame[1] = look->height;
   p.lines = e->lines, p.line = e->line;
   p.contours = look->contours;
+  const cf_exhibit_field *solid = cf_exhibit_find(e, "solid");
+  if (solid != NULL) p.solid = solid->at;
   if (x != NULL && y != NULL) p.arrows[0] = x->at, p.arrows[1] = y->at;
   if (!isnan(look->low) && !isnan(look->high)) p.low = look->low, p.high = look->high;
   return cf_preview_draw(c, e->grid, e->field[0].at, &p);

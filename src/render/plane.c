@@ -7,6 +7,8 @@
 #include "base/mem.h"
 #include "base/real.h"
 
+#define SOLID_LAYERS 4
+
 /* --- the plane ------------------------------------------------------------------------------------------------ */
 
 static double value_at(const cf_plane *p, const cf_box *b, const cf_real *f, const int i, const int j,
@@ -17,6 +19,31 @@ static double value_at(const cf_plane *p, const cf_box *b, const cf_real *f, con
   at += from * b->stride[p->along];
   for (int k = from; k < to; ++k, at += b->stride[p->along]) sum += (double)f[at];
   return sum / (to - from);
+}
+
+/* Values in bodies become means of those around them, a few cells deep, so that what is smooth stays so at the edge. */
+static cf_status continue_values(cf_plane *p) {
+  const int n = p->n[0], all = n * p->n[1];
+  unsigned char *known;
+  CF_TRY(CF_NEW(&known, all));
+  for (int i = 0; i < all; ++i) known[i] = p->solid[i] <= 0.5;
+  for (int layer = 1; layer <= SOLID_LAYERS; ++layer)
+    for (int i = 0; i < all; ++i) {
+      const int near[4] = {i % n > 0 ? i - 1 : i, i % n < n - 1 ? i + 1 : i, i >= n ? i - n : i,
+                           i < all - n ? i + n : i};
+      double sum = 0;
+      int count = 0;
+      for (int c = 0; c < 4 && known[i] == 0; ++c) {
+        if (known[near[c]] == 0 || known[near[c]] > layer) continue;
+        sum += p->at[near[c]];
+        ++count;
+      }
+      if (count == 0) continue;
+      p->at[i] = sum / count;
+      known[i] = (unsigned char)(layer + 1);
+    }
+  cf_free(known);
+  return CF_OK;
 }
 
 cf_status cf_plane_create(cf_plane *p, const cf_grid *g, const cf_real *f, const cf_preview *how) {
@@ -39,11 +66,19 @@ cf_status cf_plane_create(cf_plane *p, const cf_grid *g, const cf_real *f, const
   for (int j = 0; j < p->n[1]; ++j)
     for (int i = 0; i < p->n[0]; ++i)
       p->at[(size_t)j * (size_t)p->n[0] + (size_t)i] = value_at(p, b, f, i, j, from, to);
-  return CF_OK;
+  if (how->solid == NULL) return CF_OK;
+  cf_status s = CF_NEW(&p->solid, (size_t)p->n[0] * (size_t)p->n[1]);
+  for (int j = 0; s == CF_OK && j < p->n[1]; ++j)
+    for (int i = 0; i < p->n[0]; ++i)
+      p->solid[(size_t)j * (size_t)p->n[0] + (size_t)i] = value_at(p, b, how->solid, i, j, from, to);
+  if (s == CF_OK) s = continue_values(p);
+  if (s != CF_OK) cf_plane_destroy(p);
+  return s;
 }
 
 void cf_plane_destroy(cf_plane *p) {
   cf_free(p->at);
+  cf_free(p->solid);
   *p = (cf_plane){.at = NULL};
 }
 

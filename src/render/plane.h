@@ -16,6 +16,8 @@ typedef struct cf_plane {
   double h, low[2]; /* spacing, lower corner */
   double middle;    /* where the slice is */
   double *at;       /* n[1] rows of n[0], from below */
+  double
+      *solid; /* likewise, the share of a body; NULL: there is none. Values there continue those around it */
 } cf_plane;
 
 cf_status cf_plane_create(cf_plane *p, const cf_grid *g, const cf_real *f, const cf_preview *how);

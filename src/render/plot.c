@@ -13,7 +13,7 @@
 
 const cf_colour cf_plot_ground = {255, 255, 255}, cf_plot_text = {32, 36, 44},
                 cf_plot_faint = {104, 110, 122};
-static const cf_colour not_a_number = {200, 0, 200};
+static const cf_colour not_a_number = {200, 0, 200}, body = {122, 128, 138};
 
 /* --- colours -------------------------------------------------------------------------------------------------- */
 
@@ -49,6 +49,31 @@ cf_status cf_plot_field(cf_canvas *c, const cf_plot *plot, const cf_scale *scale
     }
   cf_free(values);
   frame(c, plot->x, plot->y, plot->width, plot->height);
+  return s;
+}
+
+static unsigned char mix(const unsigned char under, const unsigned char over, const double share) {
+  return (unsigned char)lrint(under + share * (over - under));
+}
+
+cf_status cf_plot_solid(cf_canvas *c, const cf_plot *plot) {
+  const size_t pixels = (size_t)plot->width * (size_t)plot->height;
+  double *values;
+  if (plot->plane->solid == NULL) return CF_OK;
+  cf_plane bodies = *plot->plane;
+  bodies.at = bodies.solid;
+  CF_TRY(CF_NEW(&values, pixels));
+  const cf_status s = cf_plane_resample(&bodies, plot->width, plot->height, false, values);
+  const double steep = CF_MAX(1, (double)plot->width / bodies.n[0]); /* the edge is about a pixel wide */
+  for (size_t i = 0; s == CF_OK && i < pixels; ++i) {
+    const double share = CF_MIN(CF_MAX((values[i] - 0.5) * steep + 0.5, 0), 1);
+    unsigned char *rgb = c->rgb + 3 * ((size_t)(plot->y + (int)(i / (size_t)plot->width)) * (size_t)c->width +
+                                       (size_t)plot->x + i % (size_t)plot->width);
+    rgb[0] = mix(rgb[0], body.r, share);
+    rgb[1] = mix(rgb[1], body.g, share);
+    rgb[2] = mix(rgb[2], body.b, share);
+  }
+  cf_free(values);
   return s;
 }
 

@@ -20,6 +20,9 @@ extern const cf_colour cf_plot_ground, cf_plot_text, cf_plot_faint;
 /* The field in colours and a thin frame around it. */
 cf_status cf_plot_field(cf_canvas *c, const cf_plot *plot, const cf_scale *scale, bool cells);
 
+/* Bodies over it, with smooth edges. */
+cf_status cf_plot_solid(cf_canvas *c, const cf_plot *plot);
+
 /* Ticks at round places on the lower and left side, with numbers and names where asked for. */
 cf_status cf_plot_axes(cf_canvas *c, const cf_plot *plot, bool lower_numbers, bool left_numbers);
 

@@ -114,6 +114,7 @@ static cf_status draw_all(cf_canvas *c, const layout *l, const cf_grid *g, const
   CF_TRY(cf_plot_field(c, &l->plot, scale, p->cells));
   if (p->contours > 0) CF_TRY(cf_plot_contours(c, &l->plot, scale, p->contours));
   if (p->arrows[0] != NULL && p->arrows[1] != NULL && g->box.dim == 2) CF_TRY(draw_arrows(c, l, g, p));
+  CF_TRY(cf_plot_solid(c, &l->plot));
   CF_TRY(cf_plot_lines(c, &l->plot, p->lines, p->line));
   CF_TRY(cf_plot_axes(c, &l->plot, true, true));
   CF_TRY(cf_plot_bar(c, l->bar, l->font, scale));

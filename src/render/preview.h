@@ -46,6 +46,7 @@ typedef struct cf_preview {
   int lines;
   const cf_polyline *line;
   int contours;             /* lines of equal value, so many between the ends of the range; 0: none */
+  const cf_real *solid;     /* above 1/2 there is nothing to show but a body: shown in grey; NULL: nowhere */
   const cf_real *arrows[2]; /* 2D only: a vector field, its parts along x and y; NULL: none */
 } cf_preview;
 

@@ -103,6 +103,8 @@ static cf_status draw(const cf_sim *sim, const cf_entry *e, const cf_real *value
   p.map = wish->map[0] != '\0' ? wish->map : NULL;
   if (wish->range.count == 2) p.low = wish->range.value[0], p.high = wish->range.value[1];
   if (wish->size.count == 2) p.size = (int)CF_MAX(wish->size.value[0], wish->size.value[1]);
+  const cf_entry *solid = cf_registry_find(&sim->shown, "solid");
+  if (solid != NULL && solid->kind == CF_KIND_CELL && solid != e) p.solid = solid->cell.at;
   p.lines = overlay.count;
   p.line = overlay.line;
   return cf_preview_draw(canvas, &sim->grid, values, &p);
