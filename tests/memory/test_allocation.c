@@ -160,7 +160,7 @@ static void diffusion_is_made_whole_or_not_at_all(void **state) {
     for (int side = 0; side < 2; ++side) c.walls.kind[0][side] = CF_WALL_VALUE;
     if (all) {
       c.p.k = c.p.capacity = (cf_fn){.eval = rise_row};
-      c.source = (cf_source){rate, flux_rate, hold, NULL};
+      c.source = (cf_source){.rate = rate, .flux_rate = flux_rate, .hold = hold};
     }
     walk(create_diffusion, &c, all ? "diffusion with everything" : "diffusion", 25);
   }
