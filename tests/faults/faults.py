@@ -322,7 +322,7 @@ class Memory(Case):
             self.assertEqual(done.returncode, 5, f"{why}: {done.stderr}")
             self.assertRegex(done.stderr, r"memory", why)
             after(why)
-            at = at + 1 if EVERY else at + 1 + at // 2
+            at = at + 1 if EVERY else 2 * at + 1
 
     def test_run(self):
         whole = self.whole()
