@@ -116,8 +116,9 @@ static double base_at(const cf_snowfall *s, const double x, const double y) {
   double at[3] = {x, y, s->high[2]};
   if (s->obstacles.count == 0) return s->low[2];
   while (at[2] > s->low[2] && cf_obstacles_distance(&s->obstacles, at) > 0) at[2] -= step;
-  if (at[2] <= s->low[2]) return s->low[2];
   double above = at[2] + step;
+  at[2] = CF_MAX(at[2], s->low[2]); /* it may rise from the ground by less than a step */
+  if (cf_obstacles_distance(&s->obstacles, at) > 0) return s->low[2];
   for (int i = 0; i < 20; ++i) {
     const double half = (above + at[2]) / 2, place[3] = {x, y, half};
     if (cf_obstacles_distance(&s->obstacles, place) > 0)

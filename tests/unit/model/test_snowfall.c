@@ -75,6 +75,39 @@ static void all_snow_is_accounted_for(void **state) {
   scene_close(&r);
 }
 
+/* A box and a ball stand in the snow: the ground is their top, and no flake in the air is within them. */
+static void snow_comes_to_lie_on_obstacles(void **state) {
+  (void)state;
+  scene_run r;
+  open_snow(&r, "snow_obstacles",
+            "  flakes: 400\n  wind: [0.3, 0, 0]\nobstacles:\n"
+            "  - {shape: box, center: [0.5, 0.5, 0.2], half: [0.2, 0.2, 0.2]}\n"
+            "  - {shape: ball, center: [0.85, 0.15, 0], radius: 0.14}\n",
+            2);
+  const cf_particles *ground = set_of(&r, "ground");
+  const cf_particles *flakes = set_of(&r, "flakes");
+  OK(cf_sim_run(r.sim, INFINITY, NULL, NULL));
+  int high = 0;
+  for (int64_t c = 0; c < ground->count; ++c) {
+    const double x = (double)ground->attribute[0].at[0][c], y = (double)ground->attribute[0].at[1][c];
+    const double base = (double)ground->attribute[1].at[0][c], away = hypot(x - 0.85, y - 0.15);
+    const bool on_box = fabs(x - 0.5) < 0.2 && fabs(y - 0.5) < 0.2;
+    const double top = on_box ? 0.4 : away < 0.14 ? sqrt(0.14 * 0.14 - away * away) : 0;
+    BELOW(fabs(base - top), 1e-5);
+    high += on_box;
+  }
+  assert_true(high > 30);
+  for (int64_t i = 0; i < flakes->count; ++i) {
+    double in = 1;
+    for (int a = 0; a < 3; ++a)
+      in = fmin(in, 0.2 - fabs((double)flakes->attribute[0].at[a][i] - (a == 2 ? 0.2 : 0.5)));
+    assert_true(in < 0);
+  }
+  assert_true(scene_metric(&r, "landed") > 50);
+  BELOW(fabs(scene_metric(&r, "error_snow")), sizeof(cf_real) == 4 ? 1e-5 : 1e-13);
+  scene_close(&r);
+}
+
 /* The resolved scene is put elsewhere, and still finds it. */
 static void the_atlas_is_beside_the_scene_wherever_that_is_written_to(void **state) {
   (void)state;
@@ -207,6 +240,7 @@ static void an_atlas_without_a_mass_is_told_with_its_place(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(all_snow_is_accounted_for),
+      cmocka_unit_test(snow_comes_to_lie_on_obstacles),
       cmocka_unit_test(the_atlas_is_beside_the_scene_wherever_that_is_written_to),
       cmocka_unit_test(as_many_land_as_fall),
       cmocka_unit_test(threads_do_not_change_a_bit),
