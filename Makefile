@@ -85,8 +85,10 @@ VALGRIND = valgrind -q --error-exitcode=9 --leak-check=full --errors-for-leak-ki
 valgrind: setup-checks
 	@$(MAKE) --no-print-directory configure
 	@cmake --build $(BUILD) --parallel $(JOBS)
-	@cd $(BUILD) && ls tests/unit_* tests/memory_* | grep -v _single | OMP_NUM_THREADS=2 OMP_WAIT_POLICY=passive \
-	  xargs -P$(JOBS) -I{} sh -c '$(VALGRIND) {} >{}.valgrind 2>&1 && echo "{}: clean" || { cat {}.valgrind; exit 255; }'
+	@mkdir -p $(BUILD)/valgrind
+	@cd $(BUILD) && ls tests | grep -E '^(unit|memory)_' | grep -v _single | \
+	  OMP_NUM_THREADS=2 OMP_WAIT_POLICY=passive xargs -P$(JOBS) -I{} sh -c \
+	  '$(VALGRIND) tests/{} >valgrind/{} 2>&1 && echo "{}: clean" || { cat valgrind/{}; exit 255; }'
 
 # --- sources ----------------------------------------------------------------------------------------------
 
