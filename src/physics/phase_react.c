@@ -30,18 +30,29 @@ CF_CLONES static void atan_row(const int n, const cf_phase_react *f) {
 }
 
 /* The same with T = H + K eta, and f' = (1 - 2 eta)(eta - 1/2 + psi) + eta (1 - eta)(1 + psi'). */
-CF_CLONES static void atan_lean_row(const int n, const cf_phase_react *f) {
+CF_KERNEL void atan_lean_loop(const int directed, const int noisy, const int n, const cf_phase_react *f) {
   const cf_real half = (cf_real)0.5;
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
-    const cf_real e = f->eta[i], steep = f->gamma * (f->beta != NULL ? f->beta[i] : 1);
+    const cf_real e = f->eta[i], steep = f->gamma * (directed ? f->beta[i] : 1);
     const cf_real y = steep * (f->T[i] + f->latent * e), bump = e * (1 - e);
-    const cf_real psi = (f->noise != NULL ? f->noise[i] : 0) - f->alpha_pi * cf_arctan(y);
+    const cf_real psi = (noisy ? f->noise[i] : 0) - f->alpha_pi * cf_arctan(y);
     const cf_real bulk = (1 - 2 * e) * ((e - half) + psi) + bump;
     const cf_real slope = bulk - f->latent * (bump > 0 ? bump : 0) * (f->alpha_pi * steep / (1 + y * y));
     f->react[i] = bump * ((e - half) + psi);
     f->lean[i] = slope < 0 ? slope : 0;
   }
+}
+
+CF_CLONES static void atan_lean_row(const int n, const cf_phase_react *f) {
+  if (f->beta == NULL && f->noise == NULL)
+    atan_lean_loop(0, 0, n, f);
+  else if (f->beta == NULL)
+    atan_lean_loop(0, 1, n, f);
+  else if (f->noise == NULL)
+    atan_lean_loop(1, 0, n, f);
+  else
+    atan_lean_loop(1, 1, n, f);
 }
 
 CF_CLONES static void karma_row(const int n, const cf_phase_react *f) {
