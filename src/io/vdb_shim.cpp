@@ -90,7 +90,9 @@ public:
   Ptr copy() const override { return Ptr(new Writer(*this)); }
 
   void save(const char *path, const openvdb::GridCPtrVec &grids, const openvdb::MetaMap &meta) {
-    setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
+    // Blosc, which OpenVDB itself prefers, packs nearly as well as ZIP in a tenth of the time.
+    const auto packer = hasBloscCompression() ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP;
+    setCompression(packer | openvdb::io::COMPRESS_ACTIVE_MASK);
     errno = 0;
     std::ofstream out(path, std::ios::binary | std::ios::trunc);
     if (out) write(out, grids, true, meta);
