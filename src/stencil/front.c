@@ -20,8 +20,8 @@ CF_KERNEL void jumps_row(const bool within, const int n, const ptrdiff_t stride,
     cf_real high = (f3 - d3) - (f2 + d2), low = (f2 - d2) - (f1 + d1);
     if (within) {
       const bool here = kind[i] == CF_CELL_INSIDE;
-      high = here & (kind[i + stride] == CF_CELL_INSIDE) ? high : 0;
-      low = here & (kind[i - stride] == CF_CELL_INSIDE) ? low : 0;
+      high = (here & (kind[i + stride] == CF_CELL_INSIDE)) ? high : 0;
+      low = (here & (kind[i - stride] == CF_CELL_INSIDE)) ? low : 0;
     }
     change[i] = (adds ? change[i] : 0) + (high - low);
   }
