@@ -121,8 +121,7 @@ double cf_box_sample_around(const cf_box_solver *f, const cf_cell b, const cf_ce
   double largest = 0;
   for (ptrdiff_t row = 0; row < rows; ++row) {
     if (g->first[row] == g->first[row + 1] || g->number[row] % step != 0) continue;
-    const cf_segment *q = &g->segment[g->first[row]];
-    for (int i = q->low; i < q->high; ++i) {
+    for (int i = g->segment[g->first[row]].low; i < g->segment[g->first[row + 1] - 1].high; ++i) {
       const ptrdiff_t p = cf_box_row(&s->plain->box, row) + i;
       if (kind[p] != CF_CELL_INSIDE) continue;
       largest = CF_MAX(largest, CF_MAX(fabs((double)b.at[p]), f->scale * fabs((double)x.at[p])));

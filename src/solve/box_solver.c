@@ -15,6 +15,7 @@
 #define PASS_MARGIN 0.25
 /* In a region: with steps chosen anew, cycles gain more and less in turn. */
 #define WINDOW    4
+#define FAR_OFF   1e4 /* times the scale of r */
 #define LOITERING 0.35
 /* What rounding leaves of the residual that a recursion started from; a new start is due well before. */
 #define RECURSION_FLOOR 5e-7
@@ -166,6 +167,15 @@ static double scale_for(const cf_box_solver *f, const cf_level *l, const cf_cell
   return near_power(size);
 }
 
+/* The sample may have missed what is large, in the few cells beside a body say: r must not grow out of single precision. */
+static void rescale(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b, const cf_cell x,
+                    cf_box_iteration *it) {
+  const double size = sqrt(CF_MAX(it->bb, isfinite(it->rr) ? it->rr : 0) / cells_of(f));
+  if (!(size > FAR_OFF * it->scale) || !isfinite(size)) return;
+  it->scale = near_power(size);
+  cf_box_form(f, A, b, x, it);
+}
+
 /* Where rounding of x itself is all that b - A x shows. What is wrong with x may be smoother and larger than that,
  * so cycles go on until the recursion, which does not know of it, has come to its end. */
 static double floor_of(const cf_box_solver *f, const cf_box_iteration *it) {
@@ -262,6 +272,7 @@ static cf_status run(const cf_box_solver *f, const cf_helmholtz *A, const cf_cel
   it.scale = scale_for(f, l, b, x);
   set_mean(f, l, b, x, &it);
   cf_box_form(f, A, b, x, &it);
+  rescale(f, A, b, x, &it);
   CF_TRY(check_sums(&it));
   balance(f, A, b, x, o->tolerance, &it);
   const double asked = (f->varied != NULL ? 1 - RECURSION_SLACK : 1) * o->tolerance;
