@@ -334,7 +334,7 @@ class Pictures(Case):
     def test_render_refuses_what_it_cannot_show(self):
         self.run_ring()
         self.refuses("render", "nowhere", says="nowhere", code=1)
-        self.refuses("render", "ring", "--frame", "9", says="has 6 frames, from 0 to 5")
+        self.refuses("render", "ring", "--frame", "9", says="the first is 0 and the last 5")
         self.refuses("render", "ring", "--style", "inc", says="did you mean ink?")
         self.refuses("render", "ring", "--field", "ph", says="phi")
         self.refuses("render", "ring", "--size", "9x", says="--size")
