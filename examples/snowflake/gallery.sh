@@ -4,3 +4,5 @@ grow flake scene-full.yaml
 spread fig-11 scene.yaml --grid phase.tau_1=1e-3,1e-4,1e-5 --grid diffusion.tau=1e-3,1e-4,1e-5
 spread fig-13 scene.yaml --grid phase.form=stable,paper --grid phase.tau_1=0.1,1e-2,1e-3
 show flake.png 1400
+show fig-11/sheet.png 1100 fig-11
+show fig-13/sheet.png 1100 fig-13
