@@ -403,6 +403,29 @@ static void the_fast_path_solves_in_regions(void **state) {
   assert_true(fast > 30);
 }
 
+/* A source and a sink beside a ball, next to nothing everywhere else: what a few rows show of b is no measure of it. */
+static void a_right_side_in_few_cells_is_solved_for(void **state) {
+  (void)state;
+  scene s;
+  scene_begin(&s, 3, 48, 48);
+  const cf_shape ball = cf_shape_sphere((double[]){24 * s.g.h, 24 * s.g.h, 24 * s.g.h}, 8 * s.g.h);
+  OK(cf_region_add(s.region, &ball, NULL, 0, CF_CELL_WALL, NULL));
+  OK(cf_region_update(s.region));
+  OK(cf_helmholtz_set(s.A, &(cf_coefficients){.beta = 1, .region = s.region}));
+  for (ptrdiff_t row = 0; row < cf_box_rows(&s.g.box); ++row)
+    for (int i = 0; i < 48; ++i) {
+      const ptrdiff_t p = cf_box_row(&s.g.box, row) + i;
+      s.x.at[p] = 0, s.b.at[p] = (cf_real)1e-25;
+    }
+  s.b.at[cf_box_at(&s.g.box, 14, 24, 24)] = 400;
+  s.b.at[cf_box_at(&s.g.box, 34, 24, 24)] = -400;
+  cf_solve_report report;
+  OK(cf_helmholtz_solve(s.A, s.b, &(cf_solve_options){1e-6, 50}, s.x, &report));
+  assert_true(report.converged && report.iterations <= 10);
+  BELOW(cf_helmholtz_residual(s.A, s.x, s.b), 1.001e-6);
+  scene_end(&s);
+}
+
 /* One thread and two; and a region that has changed is another equation. */
 static void bits_do_not_depend_on_threads(void **state) {
   (void)state;
@@ -505,6 +528,7 @@ int main(void) {
       cmocka_unit_test(a_slalom_of_plates_costs_little),
       cmocka_unit_test(a_porous_block_takes_few_iterations),
       cmocka_unit_test(the_fast_path_solves_in_regions),
+      cmocka_unit_test(a_right_side_in_few_cells_is_solved_for),
       cmocka_unit_test(bits_do_not_depend_on_threads),
       cmocka_unit_test(tiles_give_the_bits_of_the_whole_box),
   };
