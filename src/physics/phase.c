@@ -55,8 +55,6 @@ cf_status cf_phase_set(cf_phase *p, const cf_phase_params *params) {
   return CF_OK;
 }
 
-cf_anisotropy_bounds cf_phase_bounds(const cf_phase *p) { return p->bounds; }
-
 /* --- creation --------------------------------------------------------------------------------------------- */
 
 static cf_real *take(cf_real **room, const ptrdiff_t n) {

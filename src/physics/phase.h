@@ -102,9 +102,6 @@ typedef struct cf_phase_limits {
 } cf_phase_limits;
 cf_phase_limits cf_phase_limits_of(const cf_phase *p);
 
-/* Whether the energy of the surface is convex (A + A'' > 0), and its bounds. */
-cf_anisotropy_bounds cf_phase_bounds(const cf_phase *p);
-
 /* All four fields from t to t + dt in `substeps` equal steps. `order`: 3, or 1 for forward Euler. W (NULL: none) is
  * dT/dt from elsewhere, constant over the step. heat_in: what came in through the walls of T is added to it, as an
  * integral of T. CF_BAD_ARGUMENT: no substeps. */

@@ -138,11 +138,6 @@ static bool to_cells(const cf_medium *m, const cf_vec at, float x[3]) {
   return in;
 }
 
-float cf_medium_at(const cf_medium *m, const cf_vec at) {
-  float x[3];
-  return to_cells(m, at, x) ? between(m->n, m->density, x) : 0;
-}
-
 /* --- light inside ------------------------------------------------------------------------------------------------ */
 
 typedef struct sweep {

@@ -52,9 +52,6 @@ cf_status cf_medium_illuminate(cf_medium *m, int lights, const cf_light *light, 
 void cf_medium_march(const cf_medium *m, const cf_ray *r, float near, float far, float offset, cf_vec *light,
                      cf_vec *through);
 
-/* The density at a place, 0 outside. */
-float cf_medium_at(const cf_medium *m, cf_vec at);
-
 /* The part of light l that comes through to a place. */
 cf_vec cf_medium_shade(const cf_medium *m, int l, cf_vec at);
 
