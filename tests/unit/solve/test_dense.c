@@ -6,11 +6,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "elimination.h"
 #include "grid/wall.h"
 #include "solve/helmholtz.h"
 #include "testing.h"
-
-enum { MOST = 7 * 7 * 7 };
 
 typedef struct small {
   cf_grid g;
@@ -27,22 +26,10 @@ static int number(const small *s, const int at[3]) {
   return at[0] + s->g.box.n[0] * (at[1] + s->g.box.n[1] * at[2]);
 }
 
-static void place(const small *s, const int cell, int at[3]) {
-  at[0] = cell % s->g.box.n[0];
-  at[1] = cell / s->g.box.n[0] % s->g.box.n[1];
-  at[2] = cell / (s->g.box.n[0] * s->g.box.n[1]);
-}
-
-static ptrdiff_t index_of(const small *s, const int cell) {
-  int at[3];
-  place(s, cell, at);
-  return cf_box_at(&s->g.box, at[0], at[1], at[2]);
-}
-
 /* The neighbour of a cell; -1: none (a wall, or an axis of one cell joined to itself). */
 static int neighbour(const small *s, const int cell, const int a, const int high) {
   int at[3];
-  place(s, cell, at);
+  cell_place(&s->g.box, cell, at);
   const int n = s->g.box.n[a];
   at[a] += high ? 1 : -1;
   if (at[a] < 0 || at[a] >= n) {
@@ -74,19 +61,17 @@ static void random_faces(small *s, const double closed, const cf_face beta) {
       const double b = test_random(&seed) < closed ? 0 : pow(10, 2 * test_random(&seed) - 1);
       const int below = neighbour(s, c, a, 0);
       int at[3];
-      place(s, c, at);
+      cell_place(&s->g.box, c, at);
       s->face[a][c][0] = b;
-      beta.at[a][index_of(s, c)] = (cf_real)b;
+      beta.at[a][cell_index(&s->g.box, c)] = (cf_real)b;
       if (below >= 0) s->face[a][below][1] = b;
       if (at[a] == s->g.box.n[a] - 1 && neighbour(s, c, a, 1) < 0) {
         const double wall = pow(10, 2 * test_random(&seed) - 1);
         s->face[a][c][1] = wall;
-        beta.at[a][index_of(s, c) + s->g.box.stride[a]] = (cf_real)wall;
+        beta.at[a][cell_index(&s->g.box, c) + s->g.box.stride[a]] = (cf_real)wall;
       }
     }
 }
-
-static double matrix[MOST][MOST + 1];
 
 static void assemble(const small *s) {
   const double h2 = s->g.h * s->g.h;
@@ -105,37 +90,6 @@ static void assemble(const small *s) {
         }
       }
   }
-}
-
-/* Row reduction with the right side in the last column; false where a pivot is small. */
-static bool eliminate(const int n, const double *b, double *x) {
-  double largest = 0;
-  for (int i = 0; i < n; ++i) {
-    matrix[i][n] = b[i];
-    for (int j = 0; j < n; ++j) largest = fmax(largest, fabs(matrix[i][j]));
-  }
-  for (int j = 0; j < n; ++j) {
-    int p = j;
-    for (int i = j + 1; i < n; ++i)
-      if (fabs(matrix[i][j]) > fabs(matrix[p][j])) p = i;
-    if (!(fabs(matrix[p][j]) > 1e-9 * largest)) return false;
-    for (int k = j; k <= n; ++k) {
-      const double swap = matrix[j][k];
-      matrix[j][k] = matrix[p][k];
-      matrix[p][k] = swap;
-    }
-    for (int i = j + 1; i < n; ++i) {
-      const double f = matrix[i][j] / matrix[j][j];
-      if (f != 0)
-        for (int k = j; k <= n; ++k) matrix[i][k] -= f * matrix[j][k];
-    }
-  }
-  for (int i = n - 1; i >= 0; --i) {
-    double sum = matrix[i][n];
-    for (int j = i + 1; j < n; ++j) sum -= matrix[i][j] * x[j];
-    x[i] = sum / matrix[i][i];
-  }
-  return true;
 }
 
 typedef struct work {
@@ -170,7 +124,7 @@ static void random_operator(small *s, const int form, const double alpha, const 
   cf_coefficients c = {.alpha = alpha, .beta = beta};
   for (int i = 0; i < s->cells; ++i) {
     s->alpha[i] = alpha * (form & 1 ? 0.2 + test_random(&seed) : 1);
-    w->alpha.at[index_of(s, i)] = (cf_real)s->alpha[i];
+    w->alpha.at[cell_index(&s->g.box, i)] = (cf_real)s->alpha[i];
     for (int a = 0; a < 3; ++a) s->face[a][i][0] = s->face[a][i][1] = beta;
   }
   if (form & 1) c.alpha_at = &w->alpha;
@@ -195,8 +149,8 @@ static void solutions_match_elimination(void **state) {
     random_operator(&s, form, alpha, pick(2) ? 0.3 : 0, &w);
     for (int i = 0; i < s.cells; ++i) {
       b[i] = 2 * test_random(&seed) - 1;
-      w.b.at[index_of(&s, i)] = b[i];
-      w.x.at[index_of(&s, i)] = test_random(&seed);
+      w.b.at[cell_index(&s.g.box, i)] = b[i];
+      w.x.at[cell_index(&s.g.box, i)] = test_random(&seed);
     }
     assemble(&s);
     if (eliminate(s.cells, b, x)) {
@@ -204,7 +158,8 @@ static void solutions_match_elimination(void **state) {
       OK(cf_helmholtz_solve(w.A, w.b, &(cf_solve_options){1e-14, 200}, w.x, &report));
       double size = 0;
       for (int i = 0; i < s.cells; ++i) size = fmax(size, fabs(x[i]));
-      for (int i = 0; i < s.cells; ++i) CLOSE((double)w.x.at[index_of(&s, i)] / size, x[i] / size, 1e-9);
+      for (int i = 0; i < s.cells; ++i)
+        CLOSE((double)w.x.at[cell_index(&s.g.box, i)] / size, x[i] / size, 1e-9);
       ++compared;
     }
     work_end(&s, &w);
@@ -222,7 +177,7 @@ static void cut_off_regions_do_no_harm(void **state) {
     work w;
     work_begin(&s, pick(4), &w);
     random_operator(&s, 2, 0, 0.1 + 0.8 * test_random(&seed), &w);
-    for (int i = 0; i < s.cells; ++i) w.y.at[index_of(&s, i)] = 2 * test_random(&seed) - 1;
+    for (int i = 0; i < s.cells; ++i) w.y.at[cell_index(&s.g.box, i)] = 2 * test_random(&seed) - 1;
     cf_helmholtz_apply(w.A, w.y, w.b);
     cf_solve_report report;
     OK(cf_helmholtz_solve(w.A, w.b, &(cf_solve_options){1e-6, 300}, w.x, &report));
@@ -236,7 +191,7 @@ static void cut_off_regions_do_no_harm(void **state) {
 
 static double dot(const small *s, const cf_cell x, const cf_cell y) {
   double sum = 0;
-  for (int i = 0; i < s->cells; ++i) sum += x.at[index_of(s, i)] * y.at[index_of(s, i)];
+  for (int i = 0; i < s->cells; ++i) sum += x.at[cell_index(&s->g.box, i)] * y.at[cell_index(&s->g.box, i)];
   return sum;
 }
 
@@ -250,8 +205,8 @@ static void operator_is_symmetric_and_matches_its_definition(void **state) {
     const int form = pick(4);
     random_operator(&s, form, test_random(&seed), 0.2, &w);
     for (int i = 0; i < s.cells; ++i) {
-      w.x.at[index_of(&s, i)] = 2 * test_random(&seed) - 1;
-      w.y.at[index_of(&s, i)] = 2 * test_random(&seed) - 1;
+      w.x.at[cell_index(&s.g.box, i)] = 2 * test_random(&seed) - 1;
+      w.y.at[cell_index(&s.g.box, i)] = 2 * test_random(&seed) - 1;
     }
     assemble(&s);
     cf_helmholtz_apply(w.A, w.x, w.b);
@@ -259,8 +214,8 @@ static void operator_is_symmetric_and_matches_its_definition(void **state) {
     for (int i = 0; i < s.cells; ++i) largest = fmax(largest, matrix[i][i]);
     for (int i = 0; i < s.cells; ++i) {
       double sum = 0;
-      for (int j = 0; j < s.cells; ++j) sum += matrix[i][j] * w.x.at[index_of(&s, j)];
-      CLOSE(w.b.at[index_of(&s, i)] / largest, sum / largest, 1e-14);
+      for (int j = 0; j < s.cells; ++j) sum += matrix[i][j] * w.x.at[cell_index(&s.g.box, j)];
+      CLOSE(w.b.at[cell_index(&s.g.box, i)] / largest, sum / largest, 1e-14);
     }
     const double Axy = dot(&s, w.b, w.y);
     cf_helmholtz_apply(w.A, w.y, w.b);
@@ -292,8 +247,8 @@ static void held_walls_enter_the_right_side(void **state) {
       OK(cf_helmholtz_solve(w.A, w.b, &(cf_solve_options){1e-13, 50}, w.x, &report));
       for (int i = 0; i < s.cells; ++i) {
         int at[3];
-        place(&s, i, at);
-        CLOSE(w.x.at[index_of(&s, i)], 2 - 3 * (at[axis] + 0.5) / n[axis], 1e-11);
+        cell_place(&s.g.box, i, at);
+        CLOSE(w.x.at[cell_index(&s.g.box, i)], 2 - 3 * (at[axis] + 0.5) / n[axis], 1e-11);
       }
       cf_wall_values_destroy(&v);
       work_end(&s, &w);

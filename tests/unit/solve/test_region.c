@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elimination.h"
 #include "grid/region.h"
 #include "solve/helmholtz.h"
 #include "testing.h"
@@ -15,8 +16,6 @@ static uint64_t seed = 11;
 static int pick(const int count) { return (int)(test_random(&seed) * count); }
 
 /* --- small systems ---------------------------------------------------------------------------------------- */
-
-enum { MOST = 6 * 6 * 6 };
 
 typedef struct small {
   cf_grid g;
@@ -29,20 +28,6 @@ typedef struct small {
   double alpha_number, beta_number;
   int cells;
 } small;
-
-static double matrix[MOST][MOST + 1];
-
-static void place(const small *s, const int cell, int at[3]) {
-  at[0] = cell % s->g.box.n[0];
-  at[1] = cell / s->g.box.n[0] % s->g.box.n[1];
-  at[2] = cell / (s->g.box.n[0] * s->g.box.n[1]);
-}
-
-static ptrdiff_t index_of(const small *s, const int cell) {
-  int at[3];
-  place(s, cell, at);
-  return cf_box_at(&s->g.box, at[0], at[1], at[2]);
-}
 
 static void small_begin(small *s) {
   const int dim = 2 + pick(2);
@@ -82,9 +67,9 @@ static void random_problem(small *s) {
   s->beta_varies = pick(2);
   const double spread = pick(2) ? 1 : 3; /* of beta, in decades: different along different axes */
   for (int c = 0; c < s->cells; ++c) {
-    const ptrdiff_t p = index_of(s, c);
+    const ptrdiff_t p = cell_index(&s->g.box, c);
     int at[3];
-    place(s, c, at);
+    cell_place(&s->g.box, c, at);
     const double u = test_random(&seed);
     s->region->kind[p] = u < solid                 ? CF_CELL_WALL
                          : u < solid + known       ? CF_CELL_HELD
@@ -114,8 +99,8 @@ static void random_problem(small *s) {
 /* One face of cell c, which is inside: from the definition. */
 static void assemble_face(const small *s, const int c, const int a, const int high, double *held) {
   int at[3];
-  place(s, c, at);
-  const ptrdiff_t p = index_of(s, c);
+  cell_place(&s->g.box, c, at);
+  const ptrdiff_t p = cell_index(&s->g.box, c);
   const int n = s->g.box.n[a];
   const double h2 = s->g.h * s->g.h;
   const double beta =
@@ -130,7 +115,7 @@ static void assemble_face(const small *s, const int c, const int a, const int hi
     at[a] = (at[a] + n) % n;
   }
   const int other = at[0] + s->g.box.n[0] * (at[1] + s->g.box.n[1] * at[2]);
-  const ptrdiff_t q = index_of(s, other);
+  const ptrdiff_t q = cell_index(&s->g.box, other);
   switch (cf_region_kind(s->region, q)) {
     case CF_CELL_INSIDE:
       matrix[c][c] += beta;
@@ -151,7 +136,7 @@ static void assemble_face(const small *s, const int c, const int a, const int hi
 static void assemble(const small *s, double *held) {
   memset(matrix, 0, sizeof matrix);
   for (int c = 0; c < s->cells; ++c) {
-    const ptrdiff_t p = index_of(s, c);
+    const ptrdiff_t p = cell_index(&s->g.box, c);
     held[c] = 0;
     if (cf_region_kind(s->region, p) != CF_CELL_INSIDE) {
       matrix[c][c] = 1;
@@ -161,32 +146,6 @@ static void assemble(const small *s, double *held) {
     for (int a = 0; a < s->g.box.dim; ++a)
       for (int high = 0; high < 2; ++high) assemble_face(s, c, a, high, &held[c]);
   }
-}
-
-/* Row reduction with the right side in the last column; false where a pivot is small. */
-static bool eliminate(const int n, const double *b, double *x) {
-  double largest = 0;
-  for (int i = 0; i < n; ++i)
-    for (int k = 0; k < n; ++k) largest = fmax(largest, fabs(matrix[i][k]));
-  for (int i = 0; i < n; ++i) matrix[i][n] = b[i];
-  for (int j = 0; j < n; ++j) {
-    int p = j;
-    for (int i = j + 1; i < n; ++i)
-      if (fabs(matrix[i][j]) > fabs(matrix[p][j])) p = i;
-    if (fabs(matrix[p][j]) < 1e-9 * largest) return false;
-    for (int k = j; k <= n; ++k) {
-      const double swap = matrix[j][k];
-      matrix[j][k] = matrix[p][k];
-      matrix[p][k] = swap;
-    }
-    for (int i = 0; i < n; ++i) {
-      if (i == j || matrix[i][j] == 0) continue;
-      const double f = matrix[i][j] / matrix[j][j];
-      for (int k = j; k <= n; ++k) matrix[i][k] -= f * matrix[j][k];
-    }
-  }
-  for (int i = 0; i < n; ++i) x[i] = matrix[i][n] / matrix[i][i];
-  return true;
 }
 
 static void random_regions_match_elimination(void **state) {
@@ -199,8 +158,9 @@ static void random_regions_match_elimination(void **state) {
     random_problem(&s);
     assemble(&s, held);
     for (int c = 0; c < s.cells; ++c) {
-      const bool inside = cf_region_kind(s.region, index_of(&s, c)) == CF_CELL_INSIDE;
-      b[c] = inside ? (double)s.b.at[index_of(&s, c)] + held[c] : (double)s.x.at[index_of(&s, c)];
+      const bool inside = cf_region_kind(s.region, cell_index(&s.g.box, c)) == CF_CELL_INSIDE;
+      b[c] = inside ? (double)s.b.at[cell_index(&s.g.box, c)] + held[c]
+                    : (double)s.x.at[cell_index(&s.g.box, c)];
     }
     if (eliminate(s.cells, b, x)) {
       cf_solve_report report;
@@ -208,7 +168,8 @@ static void random_regions_match_elimination(void **state) {
       OK(cf_helmholtz_solve(s.A, s.b, &(cf_solve_options){1e-13, 200}, s.x, &report));
       double size = 1e-3;
       for (int c = 0; c < s.cells; ++c) size = fmax(size, fabs(x[c]));
-      for (int c = 0; c < s.cells; ++c) CLOSE((double)s.x.at[index_of(&s, c)] / size, x[c] / size, 1e-7);
+      for (int c = 0; c < s.cells; ++c)
+        CLOSE((double)s.x.at[cell_index(&s.g.box, c)] / size, x[c] / size, 1e-7);
       ++compared;
       most = report.iterations > most ? report.iterations : most;
     }
