@@ -16,25 +16,36 @@
 /* Turns of the waiting loop before a thread sleeps: some microseconds. */
 #define TURNS "1000"
 
-static cf_status become(const char *name, char **argv) {
-  char path[PATH_MAX];
-  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-  if (length <= 0) return cf_fail(CF_FAILED, "the place of this program is not known: run %s itself", name);
+/* The path of the file that runs here, whatever it is called. */
+static bool find_self(char path[PATH_MAX]) {
+  const ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
+  if (length <= 0) return false;
   path[length] = '\0';
-  char *last = strrchr(path, '/') + 1;
-  if ((size_t)(last - path) + strlen(name) + 1 > sizeof path)
-    return cf_fail(CF_FAILED, "the path of this program is too long: run %s itself", name);
-  memcpy(last, name, strlen(name) + 1);
+  return true;
+}
+
+static void become(const char *path, char **argv) {
   fflush(NULL);
   execv(path, argv);
+}
+
+cf_status cf_relaunch_sister(char **argv) {
+  static const char name[] = CF_SISTER;
+  char path[PATH_MAX];
+  if (!find_self(path))
+    return cf_fail(CF_FAILED, "the place of this program is not known: run %s itself", name);
+  char *last = strrchr(path, '/') + 1;
+  if ((size_t)(last - path) + sizeof name > sizeof path)
+    return cf_fail(CF_FAILED, "the path of this program is too long: run %s itself", name);
+  memcpy(last, name, sizeof name);
+  become(path, argv);
   return cf_fail(CF_FAILED, "%.600s cannot be run: %s", path, strerror(errno));
 }
 
-cf_status cf_relaunch_sister(char **argv) { return become(CF_SISTER, argv); }
-
 void cf_relaunch_politely(char **argv) {
+  char path[PATH_MAX];
   if (getenv("OMP_WAIT_POLICY") != NULL || getenv("GOMP_SPINCOUNT") != NULL) return;
-  if (setenv("GOMP_SPINCOUNT", TURNS, 1) == 0) (void)become(CF_PROGRAM, argv);
+  if (find_self(path) && setenv("GOMP_SPINCOUNT", TURNS, 1) == 0) become(path, argv);
 }
 
 /* run.yaml starts with lines of comment; one of them ends with compiler and precision: ", single". */

@@ -436,6 +436,19 @@ class Runs(Case):
         self.assertEqual(done.returncode, 1)
         self.assertIn("cattaneof", done.stderr)
 
+    def test_a_program_of_another_name_starts_itself_again(self):
+        """Where nobody says how threads wait, a run starts its own file once more, not what is called cattaneo."""
+        mine, other = self.folder / "mine", self.folder / "cattaneo"
+        mine.write_bytes(pathlib.Path(PROGRAM).read_bytes())
+        other.write_text("#!/bin/sh\nexit 77\n")
+        mine.chmod(0o755)
+        other.chmod(0o755)
+        quiet = {k: v for k, v in os.environ.items() if k not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+        done = self.call("run", self.scene(), "-o", "d", "--steps", "3", program=str(mine), environment=quiet)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.call("resume", "d", program=str(mine), environment=quiet)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_the_memory_limit_is_code_5_and_leaves_nothing(self):
         self.refuses("run", self.scene(), "--mem-limit", "1M", says="limit", code=5)
 
