@@ -299,7 +299,7 @@ static cf_status run(const cf_box_solver *f, const cf_helmholtz *A, const cf_cel
   if (f->varied != NULL) /* conjugate gradients know better than to take rounding for the end */
     *finished = it.bb == 0 || it.rr <= enough || report->iterations >= o->max_iterations;
   if (!*finished && it.overshoots)
-    cf_varied_recall(f->varied, x); /* what is far off is far off in few places: worse
+    cf_varied_copy(f->varied, f->varied->best, x); /* what is far off is far off in few places: worse
                                                                     * to start from than nothing */
   settle_mean(f, A, b, x, o->tolerance, &it);
   report->residual = it.bb > 0 ? sqrt(it.rr / it.bb) : 0;
@@ -318,7 +318,7 @@ cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, 
   f->varied->band_sweeps = BAND_SWEEPS;
   cf_pockets_remove_means(pockets, l, b);
   cf_pockets_keep_means(pockets, l, x);
-  if (f->depth > 1) cf_varied_keep(f->varied, x);
+  if (f->depth > 1) cf_varied_copy(f->varied, x, f->varied->best);
   CF_TRY(run(f, A, b, o, x, report, finished));
   cf_pockets_restore_means(pockets, l, x);
   return CF_OK;

@@ -39,6 +39,7 @@ static void release(cf_varied *v) {
   cf_cell_destroy(&v->r, b);
   cf_cell_destroy(&v->p, b);
   cf_cell_destroy(&v->Ap, b);
+  cf_cell_destroy(&v->best, b);
   for (int a = 0; a < 3; ++a) {
     cf_free(v->lo[a]);
     cf_free(v->hi[a]);
@@ -98,6 +99,7 @@ static cf_status make(cf_varied *v) {
   CF_TRY(cell_create(v, &v->r));
   CF_TRY(cell_create(v, &v->p));
   CF_TRY(cell_create(v, &v->Ap));
+  CF_TRY(cell_create(v, &v->best));
   for (int a = 0; a < v->A->grid.box.dim; ++a) {
     const cf_axis *axis = &v->A->level[0].axis[a];
     CF_TRY(CF_NEW(&v->lo[a], axis->n));
@@ -107,7 +109,7 @@ static cf_status make(cf_varied *v) {
       v->hi[a][i] = (cf_real)axis->hi1[i];
     }
   }
-  return CF_NEW(&v->sums, 2 * cf_box_rows(&v->A->grid.box));
+  return CF_NEW(&v->sums, 3 * cf_box_rows(&v->A->grid.box));
 }
 
 /* Levels and fields for this region's tiles. */
@@ -124,8 +126,8 @@ static cf_status prepare(cf_varied *v, const cf_region *region) {
     }
   }
   if (tiles == NULL) return CF_OK;
-  const cf_cell *cells[] = {&v->r, &v->p, &v->Ap, &v->own_alpha};
-  for (int f = 0; f < 4; ++f)
+  const cf_cell *cells[] = {&v->r, &v->p, &v->Ap, &v->best, &v->own_alpha};
+  for (int f = 0; f < 5; ++f)
     if (cells[f]->at != NULL)
       cf_tiles_follow_bytes(tiles, v->level[0].followed, cells[f]->at, sizeof(cf_real));
   for (int a = 0; a < 3; ++a)
@@ -289,6 +291,7 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
   find_range(&f, &alpha, &least, &beta);
   const double couplings = 2 * A->grid.box.dim * beta * f.h2;
   f.scale = alpha + couplings > 0 ? 1 / CF_MAX(alpha + couplings, 1e-300) : 1;
+  v->scale = f.scale;
   cf_coupled *l = &v->level[0];
   CF_PARALLEL_COUPLED (l, r)
     CF_TILE_ROWS (l, r, j, k)

@@ -33,7 +33,9 @@ struct cf_varied {
   uint64_t stamp; /* of the region that numbers are set in, 0: none */
 
   cf_cell r, p, Ap; /* of conjugate gradients */
-  double *sums;     /* two for every row of the box */
+  cf_cell best;     /* the solution that an iteration starts from */
+  double scale;     /* of the levels: theirs over the equation's own */
+  double *sums;     /* three for every row of the box */
 };
 
 /* level[at].e = one V-cycle on level[at].r. */
@@ -45,8 +47,28 @@ void cf_varied_set_ghosts(const cf_varied *v, cf_cell x);
 /* x = 0 on the cells inside. */
 void cf_varied_clear(const cf_varied *v, cf_cell x);
 
-/* Puts x aside, where conjugate gradients have their direction; and back. */
-void cf_varied_keep(const cf_varied *v, cf_cell x);
-void cf_varied_recall(const cf_varied *v, cf_cell x);
+void cf_varied_copy(const cf_varied *v, cf_cell from, cf_cell to);
+
+/* --- passes of conjugate gradients (varied_rows.c) ----------------------------------------------------- */
+
+typedef struct cf_varied_sums {
+  double first, second, third;
+} cf_varied_sums;
+
+/* r = b - A x; the squares of r, of b, and of x times the diagonal (as level 0 has it). */
+cf_varied_sums cf_varied_form(const cf_varied *v, cf_cell x, cf_cell b);
+
+/* level[0].r = scale r: the cycle's right side. */
+void cf_varied_convert(const cf_varied *v, double scale);
+
+/* z . A p and z . r, with z the cycle's correction; then p = z + beta p. */
+cf_varied_sums cf_varied_test_correction(const cf_varied *v);
+void cf_varied_turn(const cf_varied *v, double beta);
+
+/* A p; p . A p and p . r. */
+cf_varied_sums cf_varied_probe(const cf_varied *v);
+
+/* x += a p, r -= a A p, and the next right side of the cycle; the square of r. */
+double cf_varied_advance(const cf_varied *v, double a, double scale, cf_cell x);
 
 #endif

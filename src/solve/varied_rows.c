@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What conjugate gradients (varied_cg.c) do to the region's rows, in passes.
+ *
+ * Sums: one number for every row of the box, lanes counted from the row's first cell, rows added in a fixed tree. A row
+ * of which only runs are visited has the bits of the whole row with zeros elsewhere.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "grid/sweep.h"
+#include "solve/varied.h"
+#include "solve/varied_part.h"
+
+/* --- rows --------------------------------------------------------------------------------------------- */
+
+typedef struct operator_row {
+  const cf_real *x, *alpha, *beta[3];
+  const cf_real *lo_x, *hi_x;
+  cf_real lo[3], hi[3], alpha_number;
+  ptrdiff_t stride[3];
+  cf_real *y;
+  const cf_real *b; /* of a residual, and where there is an equation */
+  const float *inverse;
+} operator_row;
+
+/* form: alpha is a number (0) or a field (1). */
+CF_KERNEL void operate(const int dim, const int form, const int n, const operator_row *of, const int unused) {
+  (void)unused;
+  const operator_row o = *of;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    cf_real sum = (form ? o.alpha[i] : o.alpha_number) * o.x[i];
+    CF_AXIS_LOOP
+    for (int a = 0; a < dim; ++a) {
+      const ptrdiff_t s = o.stride[a];
+      const cf_real lo = (a == 0 ? o.lo_x[i] : o.lo[a]) * o.beta[a][i];
+      const cf_real hi = (a == 0 ? o.hi_x[i] : o.hi[a]) * o.beta[a][i + s];
+      sum += lo * (o.x[i] - o.x[i - s]) - hi * (o.x[i + s] - o.x[i]);
+    }
+    o.y[i] = sum;
+  }
+}
+CF_CLONED_FORMS(operate, const operator_row *, const int)
+
+/* y = b - A x where the cell has an equation, else 0: in double, so that of the rounding only that of x itself is seen. */
+CF_KERNEL void remain(const int dim, const int form, const int n, const operator_row *of, const int unused) {
+  (void)unused;
+  const operator_row o = *of;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    const double x = (double)o.x[i];
+    double sum = (double)(form ? o.alpha[i] : o.alpha_number) * x;
+    CF_AXIS_LOOP
+    for (int a = 0; a < dim; ++a) {
+      const ptrdiff_t s = o.stride[a];
+      const double lo = (double)(a == 0 ? o.lo_x[i] : o.lo[a]) * (double)o.beta[a][i];
+      const double hi = (double)(a == 0 ? o.hi_x[i] : o.hi[a]) * (double)o.beta[a][i + s];
+      sum += lo * (x - (double)o.x[i - s]) - hi * ((double)o.x[i + s] - x);
+    }
+    o.y[i] = o.inverse[i] > 0 ? (cf_real)((double)o.b[i] - sum) : 0;
+  }
+}
+CF_CLONED_FORMS(remain, const operator_row *, const int)
+
+static operator_row row_of(const cf_varied *v, const cf_run *run, const int j, const int k, const cf_real *x,
+                           cf_real *y) {
+  const cf_box *b = &v->A->grid.box;
+  const ptrdiff_t p = cf_box_at(b, run->low, j, k);
+  const bool deep = b->dim == 3;
+  return (operator_row){.x = x + p,
+                        .alpha = v->alpha.at != NULL ? v->alpha.at + p : NULL,
+                        .beta = {v->beta.at[0] + p, v->beta.at[1] + p, deep ? v->beta.at[2] + p : NULL},
+                        .lo_x = v->lo[0] + run->low,
+                        .hi_x = v->hi[0] + run->low,
+                        .lo = {0, v->lo[1][j], deep ? v->lo[2][k] : 0},
+                        .hi = {0, v->hi[1][j], deep ? v->hi[2][k] : 0},
+                        .alpha_number = (cf_real)v->alpha_number,
+                        .stride = {b->stride[0], b->stride[1], b->stride[2]},
+                        .y = y + p};
+}
+
+/* y = A x on a run. */
+static void operate_run(const cf_varied *v, const cf_run *run, const int j, const int k, const cf_real *x,
+                        cf_real *y) {
+  const operator_row o = row_of(v, run, j, k, x, y);
+  operate_by_form(v->A->grid.box.dim, v->alpha.at != NULL, run->high - run->low, &o, 0);
+}
+
+CF_CLONES static void dot_run(const int n, const cf_real *x, const cf_real *y, double lane[CF_SUM_LANES]) {
+  int i = 0;
+  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
+    for (int l = 0; l < CF_SUM_LANES; ++l) lane[l] += (double)x[i + l] * (double)y[i + l];
+  for (int l = 0; i < n; ++i, ++l) lane[l] += (double)x[i] * (double)y[i];
+}
+
+CF_CLONES static void mixed_dot_run(const int n, const float *z, const cf_real *y,
+                                    double lane[CF_SUM_LANES]) {
+  int i = 0;
+  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
+    for (int l = 0; l < CF_SUM_LANES; ++l) lane[l] += (double)z[i + l] * (double)y[i + l];
+  for (int l = 0; i < n; ++i, ++l) lane[l] += (double)z[i] * (double)y[i];
+}
+
+/* Adds the squares of b, and of x times the diagonal, where the cell has an equation. */
+CF_CLONES static void size_run(const int n, const operator_row *o, double bb[CF_SUM_LANES],
+                               double xx[CF_SUM_LANES]) {
+  double b[CF_SUM_LANES], x[CF_SUM_LANES];
+  for (int i = 0; i < n; i += CF_SUM_LANES) {
+    const int lanes = CF_MIN(CF_SUM_LANES, n - i);
+    CF_ROW_LOOP
+    for (int l = 0; l < lanes; ++l) {
+      const bool has = o->inverse[i + l] > 0;
+      const float inverse = has ? o->inverse[i + l] : 1;
+      b[l] = has ? (double)o->b[i + l] : 0;
+      x[l] = has ? (double)o->x[i + l] / (double)inverse : 0;
+    }
+    for (int l = 0; l < lanes; ++l) bb[l] += b[l] * b[l], xx[l] += x[l] * x[l];
+  }
+}
+
+CF_CLONES static void convert_run(const int n, const double scale, const cf_real *r, float *single) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) single[i] = (float)(scale * (double)r[i]);
+}
+
+CF_CLONES static void direction_run(const int n, const cf_real beta, const float *z, cf_real *p) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) p[i] = (cf_real)z[i] + beta * p[i];
+}
+
+CF_CLONES static void advance_run(const int n, const cf_real a, const cf_real *p, const cf_real *Ap,
+                                  cf_real *x, cf_real *r) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    x[i] += a * p[i];
+    r[i] -= a * Ap[i];
+  }
+}
+
+/* --- passes ------------------------------------------------------------------------------------------- */
+
+/* Up to three sums along a row. */
+typedef struct lanes {
+  double sum[3][CF_SUM_LANES];
+} lanes;
+
+static void keep_row(const cf_varied *v, const int count, const int j, const int k, const lanes *w) {
+  const cf_box *b = &v->A->grid.box;
+  for (int s = 0; s < count; ++s)
+    v->sums[s * cf_box_rows(b) + j + (ptrdiff_t)k * b->n[1]] = cf_sum_lanes(w->sum[s]);
+}
+
+static cf_varied_sums add_up(const cf_varied *v, const int count) {
+  const ptrdiff_t rows = cf_box_rows(&v->A->grid.box);
+  double total[3] = {0};
+  for (int s = 0; s < count; ++s)
+    total[s] = v->tiles != NULL ? cf_tiles_sum_rows(v->tiles, v->sums + s * rows)
+                                : cf_sum_ordered(v->sums + s * rows, rows);
+  return (cf_varied_sums){total[0], total[1], total[2]};
+}
+
+void cf_varied_set_ghosts(const cf_varied *v, const cf_cell x) {
+  const cf_coupled *l = &v->level[0];
+  const cf_box *b = &l->box;
+  for (ptrdiff_t r = 0; r < l->rows; ++r)
+    CF_TILE_ROWS (l, r, j, k) {
+      const int at[3] = {0, j, k};
+      CF_TILE_RUNS (l, r, run) {
+        cf_real *row = x.at + cf_box_at(b, 0, j, k);
+        if (run->low == 0) row[-1] = l->periodic[0] ? row[b->n[0] - 1] : 0;
+        if (run->high == b->n[0]) row[b->n[0]] = l->periodic[0] ? row[0] : 0;
+        for (int a = 1; a < b->dim; ++a)
+          for (int side = 0; side < 2; ++side) {
+            if (at[a] != (side ? b->n[a] - 1 : 0)) continue;
+            const ptrdiff_t out = side ? b->stride[a] : -b->stride[a], across = -(b->n[a] - 1) * out;
+            for (int i = run->low; i < run->high; ++i) row[i + out] = l->periodic[a] ? row[i + across] : 0;
+          }
+      }
+    }
+}
+
+cf_varied_sums cf_varied_form(const cf_varied *v, const cf_cell x, const cf_cell b) {
+  const cf_coupled *l = &v->level[0];
+  cf_varied_set_ghosts(v, x);
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k) {
+      lanes row = {{{0}}};
+      CF_TILE_RUNS (l, w, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        const int n = run->high - run->low;
+        operator_row o = row_of(v, run, j, k, x.at, v->r.at);
+        o.b = b.at + p;
+        o.inverse = l->inverse + p;
+        remain_by_form(l->dim, v->alpha.at != NULL, n, &o, 0);
+        dot_run(n, v->r.at + p, v->r.at + p, row.sum[0]);
+        size_run(n, &o, row.sum[1], row.sum[2]);
+      }
+      keep_row(v, 3, j, k, &row);
+    }
+  return add_up(v, 3);
+}
+
+void cf_varied_convert(const cf_varied *v, const double scale) {
+  const cf_coupled *l = &v->level[0];
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k)
+      CF_TILE_RUNS (l, w, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        convert_run(run->high - run->low, scale, v->r.at + p, l->r + p);
+      }
+}
+
+cf_varied_sums cf_varied_test_correction(const cf_varied *v) {
+  const cf_coupled *l = &v->level[0];
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k) {
+      lanes row = {{{0}}};
+      CF_TILE_RUNS (l, w, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        mixed_dot_run(run->high - run->low, l->e + p, v->Ap.at + p, row.sum[0]);
+        mixed_dot_run(run->high - run->low, l->e + p, v->r.at + p, row.sum[1]);
+      }
+      keep_row(v, 2, j, k, &row);
+    }
+  return add_up(v, 2);
+}
+
+void cf_varied_turn(const cf_varied *v, const double beta) {
+  const cf_coupled *l = &v->level[0];
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k)
+      CF_TILE_RUNS (l, w, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        if (beta == 0) /* p may hold anything */
+          for (int i = 0; i < run->high - run->low; ++i) v->p.at[p + i] = (cf_real)l->e[p + i];
+        else
+          direction_run(run->high - run->low, (cf_real)beta, l->e + p, v->p.at + p);
+      }
+}
+
+cf_varied_sums cf_varied_probe(const cf_varied *v) {
+  const cf_coupled *l = &v->level[0];
+  cf_varied_set_ghosts(v, v->p);
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k) {
+      lanes row = {{{0}}};
+      CF_TILE_RUNS (l, w, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        operate_run(v, run, j, k, v->p.at, v->Ap.at);
+        dot_run(run->high - run->low, v->p.at + p, v->Ap.at + p, row.sum[0]);
+        dot_run(run->high - run->low, v->p.at + p, v->r.at + p, row.sum[1]);
+      }
+      keep_row(v, 2, j, k, &row);
+    }
+  return add_up(v, 2);
+}
+
+double cf_varied_advance(const cf_varied *v, const double a, const double scale, const cf_cell x) {
+  const cf_coupled *l = &v->level[0];
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k) {
+      lanes row = {{{0}}};
+      CF_TILE_RUNS (l, w, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        const int n = run->high - run->low;
+        advance_run(n, (cf_real)a, v->p.at + p, v->Ap.at + p, x.at + p, v->r.at + p);
+        dot_run(n, v->r.at + p, v->r.at + p, row.sum[0]);
+        convert_run(n, scale, v->r.at + p, l->r + p);
+      }
+      keep_row(v, 1, j, k, &row);
+    }
+  return add_up(v, 1).first;
+}
+
+void cf_varied_clear(const cf_varied *v, const cf_cell x) {
+  const cf_coupled *l = &v->level[0];
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k)
+      CF_TILE_RUNS (l, w, run)
+        for (ptrdiff_t i = run->low, p = cf_box_at(&l->box, 0, j, k); i < run->high; ++i)
+          if (cf_coupled_has(l, p + i)) x.at[p + i] = 0;
+}
+
+void cf_varied_copy(const cf_varied *v, const cf_cell from, const cf_cell to) {
+  const cf_coupled *l = &v->level[0];
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k)
+      CF_TILE_RUNS (l, w, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        memcpy(to.at + p, from.at + p, (size_t)(run->high - run->low) * sizeof(cf_real));
+      }
+}
+
+void cf_varied_apply(cf_varied *v, const cf_cell x, const cf_cell y) {
+  const cf_coupled *l = &v->level[0];
+  cf_varied_set_ghosts(v, x);
+  CF_PARALLEL_COUPLED (l, w)
+    CF_TILE_ROWS (l, w, j, k)
+      CF_TILE_RUNS (l, w, run) operate_run(v, run, j, k, x.at, y.at);
+}
+
+double cf_varied_residual(cf_varied *v, const cf_cell x, const cf_cell b) {
+  const cf_varied_sums s = cf_varied_form(v, x, b);
+  return s.second > 0 ? sqrt(s.first / s.second) : sqrt(s.first);
+}
