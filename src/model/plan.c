@@ -90,9 +90,12 @@ static void choose(const cf_scene *scene, const int field, const double D, const
   const double explicit = n + (f > 0 ? 4 * stage_cost(f * D * dt / (h * h)) : 0);
   plan->scheme = CF_DIFFUSE_SDIRK2;
   plan->substeps = 1;
-  if (!(D > 0) || !(tau > 0) || f >= 1) {
-    snprintf(plan->why, sizeof plan->why, "sdirk2, two implicit stages a step: %s",
-             D > 0 ? "Fourier's law has no waves to follow" : "nothing diffuses");
+  if (!(D > 0)) {
+    plan->scheme = CF_DIFFUSE_LEAPFROG;
+    snprintf(plan->why, sizeof plan->why, "leapfrog, 1 explicit substep a step: nothing diffuses");
+  } else if (!(tau > 0) || f >= 1) {
+    snprintf(plan->why, sizeof plan->why,
+             "sdirk2, two implicit stages a step: Fourier's law has no waves to follow");
   } else if (explicit < WORTH * implicit) {
     plan->scheme = CF_DIFFUSE_LEAPFROG;
     plan->substeps = n;
@@ -139,7 +142,7 @@ void cf_plan_make(const cf_scene *scene, const int field, const double D, const 
     choose(scene, field, D, dt, plan);
   else
     follow(scene, field, D, dt, plan);
-  const bool sharp = plan->scheme != CF_DIFFUSE_PAPER && d->tau > 0 && d->f_t < FILTER_BELOW;
+  const bool sharp = plan->scheme != CF_DIFFUSE_PAPER && D > 0 && d->tau > 0 && d->f_t < FILTER_BELOW;
   plan->front_filter =
       plan->scheme != CF_DIFFUSE_WAVE &&
       (d->front_filter == CF_SCENE_FILTER_AUTO ? sharp : d->front_filter == CF_SCENE_FILTER_ON);

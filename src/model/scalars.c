@@ -61,12 +61,18 @@ static cf_flux_rate rate_of(const cf_scalar *i) {
   return i->scene->flux_rate == CF_SCENE_FLUX_RATE_CONSERVATIVE ? CF_RATE_CONSERVATIVE : CF_RATE_OBJECTIVE;
 }
 
-/* In a part of the box 0 comes in through what is no wall of the box. */
-static cf_status move_cell(const cf_scalars *s, cf_advect *a, const cf_walls *walls, const cf_cell f,
-                           cf_through *through) {
-  if (!s->follows) return cf_advect_cell(a, walls, f, through);
-  const cf_walls ends = cf_scalars_ends(s, walls, CF_WALL_OPEN);
-  return cf_advect_cell_in(a, &s->part, s->corner, &ends, f, through);
+/* phi, and its flux where that is kept as its divergence (which is 0 where k is). In a part of the box 0 comes in through what is no wall of
+ * the box. */
+static cf_status move_cells(const cf_scalars *s, cf_advect *a, const cf_scalar *i, cf_through *through) {
+  const bool both = i->has_memory && i->plan.scalar_form && i->D > 0;
+  cf_carried f[2] = {{&i->carried, i->phi, through}, {&i->carried_flux, i->s, NULL}};
+  if (!s->follows) return cf_advect_cells(a, f, both ? 2 : 1);
+  cf_walls ends[2];
+  for (int n = 0; n < (both ? 2 : 1); ++n) {
+    ends[n] = cf_scalars_ends(s, f[n].walls, CF_WALL_OPEN);
+    f[n].walls = &ends[n];
+  }
+  return cf_advect_cells_in(a, &s->part, s->corner, f, both ? 2 : 1);
 }
 
 /* In obstacles stands for the move what phi continues to, so that it has no slope at their surface; one that moves
@@ -77,7 +83,7 @@ static cf_status move_phi(const cf_scalars *s, cf_advect *a, cf_scalar *i) {
   double inside = 0;
   if (around) cf_rim_fill(&s->rim, i->phi);
   if (around) inside = cf_diffuse_sum_outside(i->diffuse, i->phi);
-  CF_TRY(move_cell(s, a, &i->carried, i->phi, &through));
+  CF_TRY(move_cells(s, a, i, &through));
   i->ledger.entered += through.entered;
   i->ledger.left += through.left;
   if (!around) return CF_OK;
@@ -88,8 +94,7 @@ static cf_status move_phi(const cf_scalars *s, cf_advect *a, cf_scalar *i) {
 
 static cf_status move_one(const cf_scalars *s, cf_advect *a, cf_scalar *i) {
   CF_TRY(move_phi(s, a, i));
-  if (!i->has_memory) return CF_OK;
-  if (i->plan.scalar_form) return move_cell(s, a, &i->carried_flux, i->s, NULL);
+  if (!i->has_memory || i->plan.scalar_form) return CF_OK;
   if (i->scene->flux_rate == CF_SCENE_FLUX_RATE_PARTIAL) return CF_OK; /* Appendix A's pitfall */
   CF_TRY(cf_advect_face(a, &i->walls, rate_of(i), i->q));
   cf_diffuse_close_faces(i->diffuse, i->q);

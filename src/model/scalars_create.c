@@ -56,8 +56,9 @@ static double fields_under(const cf_scene *scene, const int field, const cf_plan
   return fields + (varied ? 4 + (dim + 3) * levels_of(scene) : 2 * levels_of(scene) * in_single);
 }
 
-/* The same before any grid is there: with the step that diffusion alone would ask for, or with the dearest scheme. */
-static double fields_of(const cf_scene *scene, const int field, bool *on_faces) {
+/* The same before any grid is there: with the step that diffusion alone would ask for, or with the dearest scheme.
+ * `beside`: what its flux makes advection take besides. */
+static double fields_of(const cf_scene *scene, const int field, int *beside) {
   const cf_scene_diffusion *d = &scene->fields.item[field].diffusion;
   const bool known = cf_fn_is_constant(&d->k.fn) && cf_fn_is_constant(&d->capacity.fn);
   const double D = known && d->capacity.fn.value > 0 ? d->k.fn.value / d->capacity.fn.value : 0;
@@ -66,7 +67,7 @@ static double fields_of(const cf_scene *scene, const int field, bool *on_faces) 
   const double dt = isnan(scene->time.dt) ? CF_MIN(own, scene->time.end / 100) : scene->time.dt;
   cf_plan plan;
   cf_plan_make(scene, field, D, cf_plan_step(scene, dt), &plan);
-  *on_faces = *on_faces || (!plan.scalar_form && d->tau > 0);
+  if (d->tau > 0) *beside = CF_MAX(*beside, plan.scalar_form ? 1 : scene->dim);
   const double fields = fields_under(scene, field, &plan);
   if (known) return fields;
   plan.scheme = CF_DIFFUSE_SDIRK2;
@@ -74,12 +75,12 @@ static double fields_of(const cf_scene *scene, const int field, bool *on_faces) 
 }
 
 double cf_scalars_memory(const cf_scene *scene) {
-  bool on_faces = false;
+  int beside = 0;
   double fields = 1; /* advection's scratch */
   for (int f = 0; f < scene->fields.count; ++f)
-    if (!cf_scene_name_is_flux(scene->fields.item[f].name)) fields += fields_of(scene, f, &on_faces);
+    if (!cf_scene_name_is_flux(scene->fields.item[f].name)) fields += fields_of(scene, f, &beside);
   if (scene->advection.scheme == CF_SCENE_ADVECTION_WENO5) fields += 1;
-  return on_faces ? fields + scene->dim : fields;
+  return fields + beside;
 }
 
 double cf_scalars_bytes(const cf_scene *scene, const double fields) {

@@ -26,10 +26,11 @@ struct cf_advect {
   int substeps;          /* of the step begun */
   int64_t parity, first; /* of the next step; of the step begun */
   cf_cell work, second;  /* second: of CF_ADVECT_WENO5 alone */
-  cf_face turned;        /* q half a stretch on; committed only where a flux is stretched */
-  cf_wall_values walls;  /* room for every wall; the walls are those of the field being moved */
+  cf_face turned;        /* q half a stretch on, or scratch of a second field; else not committed */
+  cf_wall_values
+      walls[CF_PPM_FIELDS]; /* room for every wall; the walls are those of the fields being moved */
   cf_real *rows;
-  double *lines;
+  double *lines[CF_PPM_FIELDS];
 };
 
 /* What is being moved. */
@@ -39,6 +40,7 @@ typedef struct moved {
   const double *inflow[3][2]; /* CF_GHOST_INFLOW: what comes in, a value for each volume at the wall */
   bool mass;                  /* flux form: the sum is kept */
   cf_real *at;
+  cf_through *through; /* NULL: nobody asks */
 } moved;
 
 /* --- making one --------------------------------------------------------------------------------------- */
@@ -50,20 +52,27 @@ static cf_status take_scratch(cf_advect *a) {
   const bool weno5 = a->scheme == CF_ADVECT_WENO5;
   if (weno5) CF_TRY(cf_cell_create(&a->second, b));
   CF_TRY(CF_NEW(&a->rows, (weno5 ? cf_weno5_rows(a->grid) : cf_ppm_rows(a->grid)) * a->grid->threads));
-  CF_TRY(CF_NEW(&a->lines, weno5 ? cf_weno5_lines(a->grid) : cf_ppm_lines(a->grid)));
-  for (int axis = 0; axis < b->dim; ++axis)
-    for (int side = 0; side < 2; ++side) {
-      const cf_wall_side w = cf_wall_side_of(b, axis, side);
-      CF_TRY(CF_NEW(&a->walls.at[axis][side], (size_t)w.n_b * (size_t)w.n_c));
-    }
+  for (int f = 0; f < CF_PPM_FIELDS; ++f) {
+    CF_TRY(CF_NEW(&a->lines[f], weno5 ? cf_weno5_lines(a->grid) : cf_ppm_lines(a->grid)));
+    for (int axis = 0; axis < b->dim; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        const cf_wall_side w = cf_wall_side_of(b, axis, side);
+        CF_TRY(CF_NEW(&a->walls[f].at[axis][side], (size_t)w.n_b * (size_t)w.n_c));
+      }
+  }
   return CF_OK;
+}
+
+static void set_grid(cf_advect *a, const cf_grid *g) {
+  a->grid = g;
+  for (int f = 0; f < CF_PPM_FIELDS; ++f) a->walls[f].grid = g;
 }
 
 cf_status cf_advect_create(cf_advect **advect, const cf_grid *g, const cf_advect_scheme scheme) {
   *advect = NULL;
   cf_advect *a;
   CF_TRY(CF_NEW(&a, 1));
-  a->grid = a->walls.grid = g;
+  set_grid(a, g);
   a->scheme = scheme;
   a->substeps = 1;
   const cf_status s = take_scratch(a);
@@ -81,8 +90,10 @@ void cf_advect_destroy(cf_advect *a) {
   cf_cell_destroy(&a->second, &a->grid->box);
   cf_face_destroy(&a->turned, &a->grid->box);
   cf_free(a->rows);
-  cf_free(a->lines);
-  cf_wall_values_destroy(&a->walls);
+  for (int f = 0; f < CF_PPM_FIELDS; ++f) {
+    cf_free(a->lines[f]);
+    cf_wall_values_destroy(&a->walls[f]);
+  }
   cf_free(a);
 }
 
@@ -128,9 +139,23 @@ cf_status cf_advect_begin(cf_advect *a, const double t, const double dt) {
 
 /* --- one substep -------------------------------------------------------------------------------------- */
 
+/* Field f of a sweep along s->axis, out of what the sweep before left. */
+static void aim(const cf_advect *a, const moved *m, const int f, cf_ppm_sweep *s) {
+  cf_ppm_field *field = &s->field[f];
+  cf_real *const scratch = f == 0 ? a->work.at : a->turned.at[0];
+  const bool in_place = a->grid->box.dim == 3 && s->axis == 0;
+  for (int side = 0; side < 2; ++side) {
+    field->ghost[side] = m->ghost[s->axis][side];
+    field->inflow[side] = m->inflow[s->axis][side];
+  }
+  field->lines = m->through != NULL && !a->wrap[s->axis] ? a->lines[f] : NULL;
+  field->from = s->swept == 0 ? m->at : field->to;
+  field->to = in_place ? (cf_real *)field->from : field->from == m->at ? scratch : m->at;
+}
+
 /* dim sweeps, each from one field into the other, so that the last one ends where the first began. With three
- * of them the one along x, which may, stays in place. */
-static void carry(cf_advect *a, const moved *m, const int substep, cf_through *through) {
+ * of them the one along x, which may, stays in place. Fields differ in their ghosts alone. */
+static void carry(cf_advect *a, const moved *m, const int fields, const int substep) {
   const int dim = a->grid->box.dim;
   const bool reversed = (a->first + substep) % 2 != 0;
   cf_ppm_sweep s = {.grid = a->grid,
@@ -138,31 +163,24 @@ static void carry(cf_advect *a, const moved *m, const int substep, cf_through *t
                     .count = {m->count[0], m->count[1], m->count[2]},
                     .half = (cf_real)(a->dt / (2 * a->grid->h)),
                     .u = a->u,
-                    .from = m->at,
                     .rows = a->rows,
-                    .lines = through != NULL ? a->lines : NULL};
-  double passed[2] = {0, 0};
-  for (int d = 0; d < dim; ++d) {
-    s.axis = reversed ? dim - 1 - d : d;
-    s.swept = d;
-    s.mass = m->mass && d == dim - 1;
-    for (int side = 0; side < 2; ++side) {
-      s.ghost[side] = m->ghost[s.axis][side];
-      s.inflow[side] = m->inflow[s.axis][side];
-    }
-    const bool in_place = dim == 3 && s.axis == 0;
-    s.to = in_place ? (cf_real *)s.from : s.from == m->at ? a->work.at : m->at;
-    cf_ppm_sweep_run(&s, passed);
-    if (d < 2) s.before[d] = s.axis;
-    s.from = s.to;
+                    .fields = fields};
+  for (s.swept = 0; s.swept < dim; ++s.swept) {
+    s.axis = reversed ? dim - 1 - s.swept : s.swept;
+    s.mass = m->mass && s.swept == dim - 1;
+    for (int f = 0; f < fields; ++f) aim(a, &m[f], f, &s);
+    cf_ppm_sweep_run(&s);
+    if (s.swept < 2) s.before[s.swept] = s.axis;
   }
-  if (through == NULL) return;
-  through->entered += passed[0] * cf_grid_volume(a->grid);
-  through->left += passed[1] * cf_grid_volume(a->grid);
+  for (int f = 0; f < fields; ++f) {
+    if (m[f].through == NULL) continue;
+    m[f].through->entered += s.field[f].entered * cf_grid_volume(a->grid);
+    m[f].through->left += s.field[f].left * cf_grid_volume(a->grid);
+  }
 }
 
 /* Three stages of Runge-Kutta; what passes the walls in them counts 1/6, 1/6 and 2/3. */
-static void reconstruct(cf_advect *a, const moved *m, cf_through *through) {
+static void reconstruct(cf_advect *a, const moved *m) {
   static const double share[3] = {0, 0.75, 1.0 / 3}, weight[3] = {1.0 / 6, 1.0 / 6, 2.0 / 3};
   cf_real *const into[3] = {a->work.at, a->second.at, m->at};
   cf_weno5_stage s = {.grid = a->grid,
@@ -174,7 +192,7 @@ static void reconstruct(cf_advect *a, const moved *m, cf_through *through) {
                       .old = m->at,
                       .from = m->at,
                       .rows = a->rows,
-                      .lines = through != NULL ? a->lines : NULL};
+                      .lines = m->through != NULL ? a->lines[0] : NULL};
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
       s.ghost[axis][side] = m->ghost[axis][side];
@@ -187,9 +205,9 @@ static void reconstruct(cf_advect *a, const moved *m, cf_through *through) {
     cf_weno5_stage_run(&s, weight[stage], passed);
     s.from = s.to;
   }
-  if (through == NULL) return;
-  through->entered += passed[0] * cf_grid_volume(a->grid);
-  through->left += passed[1] * cf_grid_volume(a->grid);
+  if (m->through == NULL) return;
+  m->through->entered += passed[0] * cf_grid_volume(a->grid);
+  m->through->left += passed[1] * cf_grid_volume(a->grid);
 }
 
 /* The paper's step: back along the path, and linear; or cubic. */
@@ -222,13 +240,16 @@ static void trace(cf_advect *a, const moved *m) {
   }
 }
 
-static void move(cf_advect *a, const moved *m, const int substep, cf_through *through) {
-  if (is_traced(a))
-    trace(a, m);
-  else if (a->scheme == CF_ADVECT_WENO5)
-    reconstruct(a, m, through);
-  else
-    carry(a, m, substep, through);
+static void move(cf_advect *a, const moved *m, const int fields, const int substep) {
+  if (!is_traced(a) && a->scheme != CF_ADVECT_WENO5) {
+    carry(a, m, fields, substep);
+    return;
+  }
+  for (int f = 0; f < fields; ++f)
+    if (is_traced(a))
+      trace(a, &m[f]);
+    else
+      reconstruct(a, &m[f]);
 }
 
 /* --- cells -------------------------------------------------------------------------------------------- */
@@ -238,17 +259,17 @@ static cf_ghost ghost_of_cells(const cf_wall kind) {
   return kind == CF_WALL_INSULATED ? CF_GHOST_MIRROR : CF_GHOST_INFLOW;
 }
 
-/* What flows in through the walls of this field: 0 where open, else the wall's function. */
-static void take_walls(cf_advect *a, const cf_walls *walls) {
-  a->walls.walls = *walls;
-  a->walls.known = false;
-  for (int axis = 0; axis < a->grid->box.dim; ++axis)
+/* What flows in through the walls of a field: 0 where open, else the wall's function. */
+static void take_walls(const cf_box *b, const cf_walls *walls, cf_wall_values *v) {
+  v->walls = *walls;
+  v->known = false;
+  for (int axis = 0; axis < b->dim; ++axis)
     for (int side = 0; side < 2; ++side) {
-      const cf_wall_side w = cf_wall_side_of(&a->grid->box, axis, side);
-      cf_wall *kind = &a->walls.walls.kind[axis][side];
+      const cf_wall_side w = cf_wall_side_of(b, axis, side);
+      cf_wall *kind = &v->walls.kind[axis][side];
       if (*kind == CF_WALL_RADIATE) *kind = CF_WALL_VALUE;
       if (*kind != CF_WALL_OPEN) continue;
-      for (ptrdiff_t i = 0; i < (ptrdiff_t)w.n_b * w.n_c; ++i) a->walls.at[axis][side][i] = 0;
+      for (ptrdiff_t i = 0; i < (ptrdiff_t)w.n_b * w.n_c; ++i) v->at[axis][side][i] = 0;
     }
 }
 
@@ -263,31 +284,49 @@ static cf_status check_walls(const cf_advect *a, const cf_walls *walls) {
   return CF_OK;
 }
 
-cf_status cf_advect_cell(cf_advect *a, const cf_walls *walls, const cf_cell phi, cf_through *through) {
-  CF_TRY(check_walls(a, walls));
+static moved moved_of(const cf_advect *a, const cf_carried *f, const cf_wall_values *v) {
   const int *n = a->grid->box.n;
-  moved m = {.component = CF_CENTRES, .count = {n[0], n[1], n[2]}, .mass = true, .at = phi.at};
+  moved m = {.component = CF_CENTRES,
+             .count = {n[0], n[1], n[2]},
+             .mass = true,
+             .at = f->phi.at,
+             .through = f->through};
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
-      m.ghost[axis][side] = ghost_of_cells(walls->kind[axis][side]);
-      m.inflow[axis][side] = a->walls.at[axis][side];
+      m.ghost[axis][side] = ghost_of_cells(f->walls->kind[axis][side]);
+      m.inflow[axis][side] = v->at[axis][side];
     }
-  take_walls(a, walls);
+  return m;
+}
+
+cf_status cf_advect_cells(cf_advect *a, const cf_carried *f, const int count) {
+  moved m[CF_PPM_FIELDS];
+  for (int i = 0; i < count; ++i) {
+    CF_TRY(check_walls(a, f[i].walls));
+    take_walls(&a->grid->box, f[i].walls, &a->walls[i]);
+    m[i] = moved_of(a, &f[i], &a->walls[i]);
+  }
   for (int substep = 0; substep < a->substeps; ++substep) {
-    cf_wall_values_sample(&a->walls, a->time + (substep + 0.5) * a->dt);
-    move(a, &m, substep, through);
+    for (int i = 0; i < count; ++i) cf_wall_values_sample(&a->walls[i], a->time + (substep + 0.5) * a->dt);
+    move(a, m, count, substep);
   }
   return CF_OK;
 }
 
-cf_status cf_advect_cell_in(cf_advect *a, const cf_grid *part, const ptrdiff_t corner, const cf_walls *walls,
-                            const cf_cell phi, cf_through *through) {
+cf_status cf_advect_cell(cf_advect *a, const cf_walls *walls, const cf_cell phi, cf_through *through) {
+  return cf_advect_cells(a, &(cf_carried){walls, phi, through}, 1);
+}
+
+cf_status cf_advect_cells_in(cf_advect *a, const cf_grid *part, const ptrdiff_t corner, const cf_carried *f,
+                             const int count) {
   const cf_grid *whole = a->grid;
   const cf_face u = a->u;
-  a->grid = a->walls.grid = part;
+  cf_carried inside[CF_PPM_FIELDS];
+  for (int i = 0; i < count; ++i) inside[i] = (cf_carried){f[i].walls, {f[i].phi.at + corner}, f[i].through};
+  set_grid(a, part);
   for (int axis = 0; axis < part->box.dim; ++axis) a->u.at[axis] = u.at[axis] + corner;
-  const cf_status s = cf_advect_cell(a, walls, (cf_cell){phi.at + corner}, through);
-  a->grid = a->walls.grid = whole;
+  const cf_status s = cf_advect_cells(a, inside, count);
+  set_grid(a, whole);
   a->u = u;
   return s;
 }
@@ -319,7 +358,7 @@ static void stretch(cf_advect *a, const cf_walls *walls, const double dt, const 
 }
 
 static void carry_component(cf_advect *a, const moved *m, const int substep) {
-  move(a, m, substep, NULL);
+  move(a, m, 1, substep);
   if (!a->wrap[m->component]) return;
   cf_halo image = {0};
   image.rule[m->component][0] = image.rule[m->component][1] = CF_HALO_WRAP;

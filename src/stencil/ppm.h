@@ -104,6 +104,23 @@ CF_KERNEL void cf_ppm_thin_row(const int n, const cf_real *u, const ptrdiff_t ne
   for (int i = 0; i < n; ++i) rho[i] -= (u[i + next] + u[i + next - shift]) * w - (u[i] + u[i - shift]) * w;
 }
 
+/* Fields of a sweep at most: Courant numbers and densities are worked out once for all of them. */
+#define CF_PPM_FIELDS 2
+
+/* One field that is swept. */
+typedef struct cf_ppm_field {
+  cf_ghost ghost[2];       /* on the low and high side of the axis */
+  const double *inflow[2]; /* CF_GHOST_INFLOW: a value for each volume at the wall, the lower of the other
+                               axes fastest, `count` of it a line */
+  const cf_real *from;
+  cf_real *to;   /* another field; may be `from` itself for axis 0 */
+  double *lines; /* scratch: cf_ppm_lines(grid) elements; NULL: nobody asks what passed through the walls */
+  double entered,
+      left; /* with `lines`: sums of f over the faces of walls through which the flow enters, and of
+                            those through which it leaves, both counted positive for positive p, in units of p
+                            times a cell; added to by every sweep */
+} cf_ppm_field;
+
 typedef struct cf_ppm_sweep {
   const cf_grid *grid;
   int axis;      /* swept along this axis */
@@ -114,21 +131,15 @@ typedef struct cf_ppm_sweep {
   bool mass;     /* the last sweep of the flux form */
   cf_real half;  /* dt/(2h) */
   cf_face u;     /* velocity with one layer of ghosts */
-  cf_ghost ghost[2];       /* on the low and high side of the axis */
-  const double *inflow[2]; /* CF_GHOST_INFLOW: a value for each volume at the wall, the lower of the other
-                               axes fastest, `count` of it a line */
-  const cf_real *from;
-  cf_real *to;   /* another field; may be `from` itself for axis 0 */
   cf_real *rows; /* scratch: cf_ppm_rows(grid) elements for each thread */
-  double *lines; /* scratch: cf_ppm_lines(grid) elements; NULL: nobody asks what passed through the walls */
+  int fields;    /* 1 <= fields <= CF_PPM_FIELDS; on volumes of the same kind, wrapped on the same sides */
+  cf_ppm_field field[CF_PPM_FIELDS];
 } cf_ppm_sweep;
 
 ptrdiff_t cf_ppm_rows(const cf_grid *g);
 ptrdiff_t cf_ppm_lines(const cf_grid *g);
 
-/* Carries `from` along the axis into `to`. If `lines` is given, adds the sums of f over the faces of walls
- * through which the flow enters to through[0], and over those through which it leaves to through[1], both
- * counted positive for positive p, in units of p times a cell. */
-void cf_ppm_sweep_run(const cf_ppm_sweep *s, double through[2]);
+/* Carries `from` of every field along the axis into `to`. */
+void cf_ppm_sweep_run(cf_ppm_sweep *s);
 
 #endif

@@ -38,7 +38,13 @@ static void what_explicit_steps_would_cost_too_much_is_implicit(void **state) {
   SAYS(plan("dt: 1/64", "k: 1", ""), "Fourier's law has no waves");
   SAYS(plan("dt: 1/64", "k: 1, tau: 1, f_t: 1", ""), "Fourier's law has no waves");
   SAYS(plan("dt: 1/64", "k: 1, tau: 1, f_t: 0.3", ""), "Fourier's part");
-  SAYS(plan("dt: 1/64", "k: 0, tau: 1", ""), "nothing diffuses");
+}
+
+static void what_does_not_diffuse_is_not_solved_for(void **state) {
+  (void)state;
+  SAYS(plan("dt: 1/64", "k: 0, tau: 1", ""), "leapfrog, 1 explicit substep a step: nothing diffuses");
+  SAYS(plan("dt: 1/64", "k: 0, tau: 0, f_t: 0.5", ""),
+       "leapfrog, 1 explicit substep a step: nothing diffuses");
 }
 
 static void frames_shorten_the_step_that_is_planned_for(void **state) {
@@ -104,6 +110,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(waves_are_followed_explicitly),
       cmocka_unit_test(what_explicit_steps_would_cost_too_much_is_implicit),
+      cmocka_unit_test(what_does_not_diffuse_is_not_solved_for),
       cmocka_unit_test(frames_shorten_the_step_that_is_planned_for),
       cmocka_unit_test(a_scheme_that_is_named_is_taken),
       cmocka_unit_test(nobody_asks_for_q_then_its_divergence_will_do),

@@ -156,6 +156,52 @@ static void advect_balances_what_passes_through_walls(void **state) {
   through_walls(3, solid, CF_WALL_RADIATE);
 }
 
+/* A second field, other walls and other values: moved beside phi, and by itself. */
+static void together(const int dim, const int *cells, const cf_advect_scheme scheme) {
+  scene s[2];
+  cf_cell other[2];
+  cf_through passed[2][2] = {{{0, 0}, {0, 0}}, {{0, 0}, {0, 0}}};
+  cf_walls walls = walls_all(CF_WALL_VALUE);
+  for (int a = 0; a < 3; ++a) walls.value[a][0] = walls.value[a][1] = cf_fn_constant(0.3 + a);
+  for (int way = 0; way < 2; ++way) {
+    scene_open_scheme(&s[way], dim, cells, walls_all(CF_WALL_OPEN), scheme);
+    OK(cf_cell_create(&other[way], &s[way].grid.box));
+    set_random_flow(&s[way], 11, 0);
+    OK(cf_advect_set_velocity(s[way].advect, s[way].u, &s[way].walls));
+    const cf_cell phi = s[way].phi;
+    s[way].phi = other[way];
+    set_noise(&s[way], 6, 0);
+    s[way].phi = phi;
+    set_noise(&s[way], 5, 0);
+    OK(cf_advect_begin(s[way].advect, 0, step_of(&s[way], 1.7)));
+    const cf_carried both[2] = {{&s[way].walls, s[way].phi, &passed[way][0]},
+                                {&walls, other[way], &passed[way][1]}};
+    if (way == 0) OK(cf_advect_cells(s[way].advect, both, 2));
+    for (int f = 0; f < 2 && way == 1; ++f) OK(cf_advect_cells(s[way].advect, &both[f], 1));
+  }
+  const cf_box *b = &s[0].grid.box;
+  const size_t row = (size_t)b->n[0] * sizeof(cf_real);
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r) {
+    assert_memory_equal(s[0].phi.at + cf_box_row(b, r), s[1].phi.at + cf_box_row(b, r), row);
+    assert_memory_equal(other[0].at + cf_box_row(b, r), other[1].at + cf_box_row(b, r), row);
+  }
+  assert_memory_equal(passed[0], passed[1], sizeof passed[0]);
+  for (int way = 0; way < 2; ++way) {
+    cf_cell_destroy(&other[way], b);
+    scene_close(&s[way]);
+  }
+}
+
+static void two_fields_together_move_as_each_alone(void **state) {
+  (void)state;
+  static const cf_advect_scheme schemes[] = {CF_ADVECT_PPM, CF_ADVECT_WENO5, CF_ADVECT_LINEAR,
+                                             CF_ADVECT_CUBIC};
+  for (int i = 0; i < 4; ++i) {
+    together(2, flat, schemes[i]);
+    together(3, solid, schemes[i]);
+  }
+}
+
 static void wave(const void *context, const int n, const double *x, const double *y, const double *z,
                  const double t, double *out) {
   (void)context, (void)x, (void)z;
@@ -266,6 +312,7 @@ int main(void) {
       cmocka_unit_test(advect_divides_long_steps),
       cmocka_unit_test(advect_is_linear_in_a_f_plus_b),
       cmocka_unit_test(advect_balances_what_passes_through_walls),
+      cmocka_unit_test(two_fields_together_move_as_each_alone),
       cmocka_unit_test(advect_lets_in_what_the_wall_says_at_the_time),
       cmocka_unit_test(linear_tracing_lets_in_what_the_wall_says),
       cmocka_unit_test(advect_refuses_what_it_cannot_do),
