@@ -100,7 +100,8 @@ const cf_command cf_commands[] = {
      cf_atlas_command},
     {"info", "FILE|DIR", 1, 1, BIT(HELP), "what a frame, a checkpoint or the folder of a run contains",
      "Scene, version and times; of every field the least and largest value, the sum and a checksum. Equal "
-     "checksums, equal bits.\n"
+     "checksums, equal bits. Of a surface (.ply, .obj) also its size and whether it is closed; of a volume "
+     "(.vdb) its grids.\n"
      "  " CF_PROGRAM " info out/cone",
      cf_info_command},
     {"bench", "[NAME]", 0, 1, BIT(JSON) | BIT(CELLS) | BIT(SIGMA) | BIT(THREADS) | BIT(HELP),

@@ -10,7 +10,7 @@
 
 #include "base/status.h"
 
-/* `path`: a frame, a checkpoint, or the folder of a run. The text is the caller's: cf_free. CF_BAD_FILE. */
+/* `path`: a frame, a checkpoint, a surface (.ply, .obj), a volume (.vdb), or the folder of a run. The text is the caller's: cf_free. CF_BAD_FILE. */
 cf_status cf_info_text(const char *path, char **text);
 
 #endif

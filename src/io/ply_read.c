@@ -267,8 +267,19 @@ static cf_status check_counts(const reader *r) {
 
 /* --- the mesh --------------------------------------------------------------------------------------------- */
 
+/* What a comment in the head says of an attribute: "comment unit of T: K". */
+static void find_unit(const char *head, const char *body, const char *name, char unit[CF_NAME_MAX]) {
+  char wanted[WORD + 24];
+  const int length = snprintf(wanted, sizeof wanted, "\ncomment unit of %s: ", name);
+  const char *at = memmem(head, (size_t)(body - head), wanted, (size_t)length);
+  unit[0] = '\0';
+  if (at == NULL) return;
+  at += length;
+  snprintf(unit, CF_NAME_MAX, "%.*s", (int)CF_MIN(strcspn(at, "\r\n"), CF_NAME_MAX), at);
+}
+
 /* Where the numbers of a vertex go: its place, its normal, attributes. */
-static cf_status connect(cf_mesh *m, element *vertex) {
+static cf_status connect(cf_mesh *m, element *vertex, const char *head, const char *body) {
   static const char *const place[3] = {"x", "y", "z"}, *const normal[3] = {"nx", "ny", "nz"};
   for (int a = 0; a < 3; ++a) {
     property *p = find_property(vertex, place[a]), *n = find_property(vertex, normal[a]);
@@ -276,17 +287,20 @@ static cf_status connect(cf_mesh *m, element *vertex) {
     if (m->normal != NULL) n->to = &m->normal[0][a], n->step = 3;
   }
   for (int i = 0; i < vertex->properties; ++i) {
+    char unit[CF_NAME_MAX];
     property *p = &vertex->property[i];
     if (p->count != NULL || p->to != NULL || m->attributes == CF_MESH_ATTRIBUTES) continue;
     if (find_property(vertex, p->name) != p) continue; /* of two with one name the first */
     if (strcmp(p->name, "nx") == 0 || strcmp(p->name, "ny") == 0 || strcmp(p->name, "nz") == 0) continue;
-    CF_TRY(cf_mesh_attribute_add(m, p->name, "", &p->to));
+    find_unit(head, body, p->name, unit);
+    CF_TRY(cf_mesh_attribute_add(m, p->name, unit, &p->to));
     p->step = 1;
   }
   return CF_OK;
 }
 
 static cf_status read_all(reader *r, cf_mesh *mesh) {
+  const char *head = r->at;
   CF_TRY(read_head(r));
   CF_TRY(check_counts(r));
   const char *body = r->at;
@@ -301,7 +315,7 @@ static cf_status read_all(reader *r, cf_mesh *mesh) {
   const bool normals = find_property(vertex, "nx") != NULL && find_property(vertex, "ny") != NULL &&
                        find_property(vertex, "nz") != NULL;
   CF_TRY(cf_mesh_resize(mesh, vertex->count, r->build.triangles, normals));
-  CF_TRY(connect(mesh, vertex));
+  CF_TRY(connect(mesh, vertex, head, body));
   return pass(r, body, vertex, face, true);
 }
 

@@ -9,7 +9,6 @@
 #include "base/mem.h"
 #include "base/version.h"
 #include "io/folder.h"
-#include "io/vdb_shim.h"
 
 #ifdef CF_WITH_OPENVDB
 bool cf_vdb_built(void) { return true; }
@@ -21,7 +20,20 @@ bool cf_vdb_shim_write(const cf_vdb_file *file, char *why, const size_t size) {
   snprintf(why, size, "this program was built without OpenVDB");
   return false;
 }
+
+bool cf_vdb_shim_look(const char *path, const cf_vdb_viewer *viewer, char *why, const size_t size) {
+  (void)path;
+  (void)viewer;
+  snprintf(why, size, "this program was built without OpenVDB");
+  return false;
+}
 #endif
+
+cf_status cf_vdb_look(const char *path, const cf_vdb_viewer *viewer) {
+  char why[256];
+  if (cf_vdb_shim_look(path, viewer, why, sizeof why)) return CF_OK;
+  return cf_fail(CF_BAD_FILE, "%s: cannot be read as a volume: %s", path, why);
+}
 
 /* --- fields as rows of voxels ----------------------------------------------------------------------------- */
 

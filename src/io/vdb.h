@@ -16,6 +16,7 @@
 
 #include "io/parts.h"
 #include "io/stamp.h"
+#include "io/vdb_shim.h"
 
 typedef struct cf_vdb_plan {
   cf_choice choice; /* particles, numbers and counters are passed over */
@@ -30,5 +31,8 @@ bool cf_vdb_built(void);
  * fields writes nothing. */
 cf_status cf_vdb_write(const char *folder, int64_t frame, const cf_registry *r, const cf_vdb_plan *plan,
                        const cf_stamp *stamp);
+
+/* Shows the words and grids of a file, ours or not. CF_BAD_FILE, also where OpenVDB was not there. */
+cf_status cf_vdb_look(const char *path, const cf_vdb_viewer *viewer);
 
 #endif

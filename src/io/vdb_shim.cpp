@@ -155,7 +155,10 @@ cf_vdb_facts look_at(const openvdb::GridBase &grid) {
   facts.h = grid.voxelSize()[0];
   facts.half = grid.saveFloatAsHalf();
   const auto place = grid.indexToWorld(Coord(0, 0, 0));
-  for (int a = 0; a < 3; ++a) facts.place[a] = place[a];
+  const auto used = grid.evalActiveVoxelBoundingBox();
+  const openvdb::Vec3d half(0.5);
+  const auto low = grid.indexToWorld(used.min().asVec3d() - half), high = grid.indexToWorld(used.max().asVec3d() + half);
+  for (int a = 0; a < 3; ++a) facts.place[a] = place[a], facts.box[0][a] = low[a], facts.box[1][a] = high[a];
   facts.components = grid.isType<openvdb::FloatGrid>() ? 1 : grid.isType<openvdb::Vec3SGrid>() ? 3 : 0;
   if (facts.components == 1)
     look_at_values(static_cast<const openvdb::FloatGrid &>(grid), [](float v) { return double(v); }, facts);
@@ -178,16 +181,18 @@ bool cf_vdb_shim_write(const cf_vdb_file *file, char *why, size_t size) {
       why, size);
 }
 
-bool cf_vdb_shim_look(const char *path, void (*visit)(void *context, const cf_vdb_facts *facts), void *context,
-                      char *why, size_t size) {
+bool cf_vdb_shim_look(const char *path, const cf_vdb_viewer *viewer, char *why, size_t size) {
   return guarded(
       [&] {
         openvdb::io::File in(path);
         in.open();
+        const auto meta = in.getMetadata();
+        for (auto at = meta->beginMeta(); viewer->word != nullptr && at != meta->endMeta(); ++at)
+          viewer->word(viewer->context, at->first.c_str(), at->second->str().c_str());
         const auto grids = in.getGrids();
         for (const auto &grid : *grids) {
           const cf_vdb_facts facts = look_at(*grid);
-          visit(context, &facts);
+          viewer->grid(viewer->context, &facts);
         }
       },
       why, size);

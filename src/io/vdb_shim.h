@@ -42,12 +42,19 @@ typedef struct cf_vdb_facts {
   int components;
   int64_t active;
   double h, place[3], low, high; /* of the active values (of vectors: their sizes) */
+  double box[2][3];              /* what the active voxels cover, corner to corner */
   bool half;
 } cf_vdb_facts;
 
-/* Calls `visit` for every grid of a file, with its facts. */
-bool cf_vdb_shim_look(const char *path, void (*visit)(void *context, const cf_vdb_facts *facts),
-                      void *context, char *why, size_t size);
+typedef struct cf_vdb_viewer {
+  void (*word)(void *context, const char *name,
+               const char *value); /* title, time ... of the file; NULL: not wanted */
+  void (*grid)(void *context, const cf_vdb_facts *facts);
+  void *context;
+} cf_vdb_viewer;
+
+/* Shows what a file has; it may be anybody's. */
+bool cf_vdb_shim_look(const char *path, const cf_vdb_viewer *viewer, char *why, size_t size);
 
 /* The value at a voxel. */
 bool cf_vdb_shim_probe(const char *path, const char *name, const int at[3], float value[3], char *why,

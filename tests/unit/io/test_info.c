@@ -6,6 +6,8 @@
 #include "io/checkpoint.h"
 #include "io/frame.h"
 #include "io/info.h"
+#include "io/mesh.h"
+#include "io/vdb.h"
 #include "output_case.h"
 
 static output_case the_case;
@@ -105,6 +107,72 @@ static void a_value_that_is_not_finite_is_named(void **state) {
   assert_info(case_path(c, "checkpoint_000012.h5").text, parts);
 }
 
+/* A tetrahedron of side 1 along the axes, or without its slanted face. */
+static void write_tetrahedron(const cf_path path, const int faces, const cf_stamp *stamp) {
+  static const int32_t corner[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  cf_mesh *mesh;
+  cf_real *T;
+  assert_int_equal(cf_mesh_create(&mesh), CF_OK);
+  assert_int_equal(cf_mesh_resize(mesh, 4, faces, false), CF_OK);
+  assert_int_equal(cf_mesh_attribute_add(mesh, "T", "K", &T), CF_OK);
+  for (int a = 0; a < 3; ++a) mesh->place[a + 1][a] = 1;
+  memcpy(mesh->corner, corner, (size_t)faces * sizeof *corner);
+  T[2] = 7;
+  assert_int_equal(cf_ply_write(path.text, mesh, stamp), CF_OK);
+  cf_mesh_destroy(mesh);
+}
+
+static void a_surface_tells_its_size_and_whether_it_is_closed(void **state) {
+  const output_case *c = *state;
+  const cf_path path = case_path(c, "mesh_000004.ply");
+  const char *const whole[] = {"a surface",
+                               "title A cone, H_c = 2",
+                               "4 vertices, 4 triangles",
+                               "(0, 0, 0) to (1, 1, 1) m",
+                               "closed ",
+                               "volume 0.166666667 m^3",
+                               "Points.z         m ",
+                               "T                K ",
+                               " 7 ",
+                               "checksum of all arrays",
+                               NULL};
+  const char *const open[] = {"open ", "with one triangle: 3, with more than two: 0", NULL};
+  write_tetrahedron(path, 4, &c->stamp);
+  assert_info(path.text, whole);
+  write_tetrahedron(path, 3, &c->stamp);
+  assert_info(path.text, open);
+}
+
+static void a_volume_tells_its_grids(void **state) {
+  const output_case *c = *state;
+  const cf_path path = case_path(c, "fields_000004.vdb");
+  const char *const parts[] = {"a volume",
+                               "A cone, H_c = 2",
+                               "density: fog volume, 20 voxels in use, h = 0.25 m",
+                               "kg/m^3, stored with 32 bits",
+                               "q: staggered",
+                               "lengths of vectors from ",
+                               NULL};
+  char *text;
+  if (cf_vdb_built()) {
+    assert_int_equal(cf_vdb_write(c->folder.text, 4, &c->registry, &(cf_vdb_plan){0}, &c->stamp), CF_OK);
+    assert_info(path.text, parts);
+  }
+  assert_int_equal(cf_file_write(path.text, "no volume", 9), CF_OK);
+  assert_int_equal(cf_info_text(path.text, &text), CF_BAD_FILE);
+  assert_says(cf_vdb_built() ? "not a VDB file" : "without OpenVDB");
+}
+
+/* A run that wrote no VTKHDF files has frames all the same. */
+static void a_folder_of_surfaces_alone_counts_them(void **state) {
+  const output_case *c = *state;
+  const char *const parts[] = {"frames       2", "mesh_000005.ply: a surface", NULL};
+  assert_int_equal(cf_frame_cut(c->folder.text, -1), CF_OK);
+  write_tetrahedron(case_path(c, "mesh_000004.ply"), 4, &c->stamp);
+  write_tetrahedron(case_path(c, "mesh_000005.ply"), 4, &c->stamp);
+  assert_info(c->folder.text, parts);
+}
+
 static void other_files_are_refused(void **state) {
   const output_case *c = *state;
   char *text;
@@ -134,6 +202,9 @@ int main(void) {
       cmocka_unit_test_setup_teardown(a_folder_tells_what_it_holds, setup, teardown),
       cmocka_unit_test_setup_teardown(equal_values_have_equal_checksums, setup, teardown),
       cmocka_unit_test_setup_teardown(a_value_that_is_not_finite_is_named, setup, teardown),
+      cmocka_unit_test_setup_teardown(a_surface_tells_its_size_and_whether_it_is_closed, setup, teardown),
+      cmocka_unit_test_setup_teardown(a_volume_tells_its_grids, setup, teardown),
+      cmocka_unit_test_setup_teardown(a_folder_of_surfaces_alone_counts_them, setup, teardown),
       cmocka_unit_test_setup_teardown(other_files_are_refused, setup, teardown),
       cmocka_unit_test_setup_teardown(failing_memory_leaks_nothing, setup, teardown),
   };

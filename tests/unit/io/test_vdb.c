@@ -29,7 +29,8 @@ static void visit(void *context, const cf_vdb_facts *facts) {
 static found look(const cf_path path) {
   found f = {0};
   char why[256] = "";
-  if (!cf_vdb_shim_look(path.text, visit, &f, why, sizeof why)) fail_msg("%s: %s", path.text, why);
+  if (!cf_vdb_shim_look(path.text, &(cf_vdb_viewer){.grid = visit, .context = &f}, why, sizeof why))
+    fail_msg("%s: %s", path.text, why);
   return f;
 }
 
