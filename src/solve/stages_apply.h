@@ -83,24 +83,31 @@ CF_KERNEL void cf_restart_half(const int dim, const int inner, const cf_half *of
   }
 }
 
-/* The sum of products along a piece of a half. */
-CF_KERNEL double cf_products(const int n, const float *a, const float *b) {
-  float lane[CF_SPLIT_LANES] = {0};
-  for (int m = 0; m < n; m += CF_SPLIT_LANES)
-    for (int l = 0; l < CF_SPLIT_LANES; ++l) lane[l] += a[m + l] * b[m + l];
+/* A sum that was taken in single precision, 16 lanes apart. */
+CF_KERNEL double cf_sum_sixteen(const cf_sixteen *sum) {
+  float lane[2 * CF_SUM_LANES];
   double wide[CF_SUM_LANES];
-  for (int l = 0; l < CF_SUM_LANES; ++l) wide[l] = (double)lane[l] + (double)lane[l + CF_SUM_LANES];
+  memcpy(lane, sum, sizeof lane);
+  const cf_eight both = CF_EIGHT_OF_FLOATS(lane) + CF_EIGHT_OF_FLOATS(lane + CF_SUM_LANES);
+  memcpy(wide, &both, sizeof wide);
   return cf_sum_lanes(wide);
 }
 
-/* The sum of squares along a piece of both halves: in single precision 16 lanes apart; beyond it in double. */
+/* The sum of products along a piece of a half. */
+CF_KERNEL double cf_products(const int n, const float *a, const float *b) {
+  cf_sixteen sum = {0};
+  for (int m = 0; m < n; m += CF_SPLIT_LANES) sum += CF_SIXTEEN_OF(a + m) * CF_SIXTEEN_OF(b + m);
+  return cf_sum_sixteen(&sum);
+}
+
+/* The sum of squares along a piece of both halves: along a row in single precision, beyond it in double. */
 CF_KERNEL double cf_squares(const int n, const float *even, const float *odd) {
-  float lane[CF_SPLIT_LANES] = {0};
-  for (int m = 0; m < n; m += CF_SPLIT_LANES)
-    for (int l = 0; l < CF_SPLIT_LANES; ++l) lane[l] += even[m + l] * even[m + l] + odd[m + l] * odd[m + l];
-  double wide[CF_SUM_LANES];
-  for (int l = 0; l < CF_SUM_LANES; ++l) wide[l] = (double)lane[l] + (double)lane[l + CF_SUM_LANES];
-  return cf_sum_lanes(wide);
+  cf_sixteen sum = {0};
+  for (int m = 0; m < n; m += CF_SPLIT_LANES) {
+    const cf_sixteen a = CF_SIXTEEN_OF(even + m), b = CF_SIXTEEN_OF(odd + m);
+    sum += a * a + b * b;
+  }
+  return cf_sum_sixteen(&sum);
 }
 
 CF_KERNEL void cf_fetch_x(const cf_pass *p, const cf_strip *t, const int j) {
@@ -111,9 +118,13 @@ CF_KERNEL void cf_fetch_x(const cf_pass *p, const cf_strip *t, const int j) {
 /* --- FORM --------------------------------------------------------------------------------------------- */
 
 CF_KERNEL double cf_square_sum(const int n, const double *f) {
-  double lane[CF_SUM_LANES] = {0};
-  for (int i = 0; i < n; i += CF_SUM_LANES)
-    for (int l = 0; l < CF_SUM_LANES; ++l) lane[l] += f[i + l] * f[i + l];
+  cf_eight sum = {0};
+  for (int i = 0; i < n; i += CF_SUM_LANES) {
+    const cf_eight v = CF_EIGHT_OF_DOUBLES(f + i);
+    sum += v * v;
+  }
+  double lane[CF_SUM_LANES];
+  memcpy(lane, &sum, sizeof lane);
   return cf_sum_lanes(lane);
 }
 

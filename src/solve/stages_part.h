@@ -7,6 +7,9 @@
 #ifndef CF_SOLVE_STAGES_PART_H
 #define CF_SOLVE_STAGES_PART_H
 
+#include <string.h>
+
+#include "grid/lanes.h"
 #include "grid/sweep.h"
 #include "solve/stages.h"
 
@@ -97,14 +100,16 @@ static inline double *cf_sums_of(const cf_pass *p, const cf_strip *t, const int 
 
 /* The sum of f and of its squares along a row. */
 CF_KERNEL void cf_sum_row(const int n, const cf_real *f, double *sum, double *squares) {
-  double lane[CF_SUM_LANES] = {0}, square[CF_SUM_LANES] = {0};
+  cf_eight sums = {0}, of_squares = {0};
   int i = 0;
-  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
-    for (int l = 0; l < CF_SUM_LANES; ++l) {
-      const double v = (double)f[i + l];
-      lane[l] += v;
-      square[l] += v * v;
-    }
+  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES) {
+    const cf_eight v = CF_EIGHT_OF(f + i);
+    sums += v;
+    of_squares += v * v;
+  }
+  double lane[CF_SUM_LANES], square[CF_SUM_LANES];
+  memcpy(lane, &sums, sizeof lane);
+  memcpy(square, &of_squares, sizeof square);
   for (int l = 0; i < n; ++i, ++l) {
     lane[l] += (double)f[i];
     square[l] += (double)f[i] * (double)f[i];

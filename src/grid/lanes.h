@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Vectors of fixed length for sums along a row. A sum kept in so many lanes has the same bits on every machine, but left
+ * to itself the compiler keeps an array of lanes in memory, or takes it apart; these stay in registers, however many of
+ * them the machine needs for one. They are for local variables: as arguments they would depend on the machine.
+ */
+#ifndef CF_GRID_LANES_H
+#define CF_GRID_LANES_H
+
+#include "base/real.h"
+
+typedef double cf_eight __attribute__((vector_size(64)));
+typedef float cf_sixteen __attribute__((vector_size(64)));
+
+/* The same in memory, anywhere. */
+typedef double cf_eight_doubles __attribute__((vector_size(64), aligned(8), may_alias));
+typedef float cf_eight_floats __attribute__((vector_size(32), aligned(4), may_alias));
+typedef float cf_sixteen_floats __attribute__((vector_size(64), aligned(4), may_alias));
+
+#define CF_EIGHT_OF_DOUBLES(p) (*(const cf_eight_doubles *)(p))
+#define CF_EIGHT_OF_FLOATS(p)  __builtin_convertvector(*(const cf_eight_floats *)(p), cf_eight)
+#define CF_SIXTEEN_OF(p)       (*(const cf_sixteen_floats *)(p))
+#ifdef CF_SINGLE
+#define CF_EIGHT_OF CF_EIGHT_OF_FLOATS
+#else
+#define CF_EIGHT_OF CF_EIGHT_OF_DOUBLES
+#endif
+
+#endif
