@@ -30,43 +30,54 @@ typedef struct stage {
 /* What a row of a stage works on; everything begins at the row's first cell. Arrays that may be missing have loops
  * of their own: a masked load from nowhere is what a processor is slowest at. */
 typedef struct stage_row {
-  const cf_real *R, *more; /* what has the memory, what has not */
+  const cf_real *R, *more, *mobility; /* what has the memory, what has not in the paper's form */
   const cf_real *start, *in, *start_m, *in_m;
   cf_real *rate, *out, *out_m;
 } stage_row;
 
+/* What of R = X + f has a memory. */
+enum { PLAIN, STABLE, PAPER };
+
 CF_KERNEL cf_real clean(const cf_real x) { return x < NOTHING && x > -NOTHING ? 0 : x; }
 
-/* rate = eta_t where nothing has a memory. */
-CF_CLONES static void plain_row(const int n, const stage *s, const stage_row *w) {
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) w->rate[i] = (w->R[i] + w->more[i]) * s->per_tau;
-}
-
-/* rate = eta_t, and r. */
-CF_CLONES static void memory_row(const int n, const stage *s, const stage_row *w) {
+/* rate = eta_t; eta and r. */
+CF_KERNEL void phase_loop(const int memory, const int masked, const int n, const stage *s,
+                          const stage_row *w) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
-    const cf_real r = w->in_m[i], r_rate = (s->rest * w->R[i] - r) * s->per_tau_1;
-    w->rate[i] = (r + s->f * w->R[i] + w->more[i]) * s->per_tau;
-    w->out_m[i] = clean(s->keep * w->start_m[i] + s->pass * r + s->d * r_rate);
+    cf_real rate = w->R[i];
+    if (memory != PLAIN) {
+      const cf_real R = rate, r = w->in_m[i], r_rate = (s->rest * R - r) * s->per_tau_1;
+      w->out_m[i] = clean(s->keep * w->start_m[i] + s->pass * r + s->d * r_rate);
+      rate = r + s->f * R;
+      if (memory == PAPER) rate += w->more[i];
+    }
+    rate *= s->per_tau;
+    if (masked) rate *= w->mobility[i];
+    w->rate[i] = rate;
+    w->out[i] = clean(s->keep * w->start[i] + s->pass * w->in[i] + s->d * rate);
   }
 }
 
-CF_CLONES static void phase_row(const int n, const stage *s, const stage_row *w) {
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i)
-    w->out[i] = clean(s->keep * w->start[i] + s->pass * w->in[i] + s->d * w->rate[i]);
-}
+#define PHASE_ROW(memory)                                                                      \
+  CF_CLONES static void phase_row_##memory(const int n, const stage *s, const stage_row *w) {  \
+    phase_loop(memory, 0, n, s, w);                                                            \
+  }                                                                                            \
+  CF_CLONES static void masked_row_##memory(const int n, const stage *s, const stage_row *w) { \
+    phase_loop(memory, 1, n, s, w);                                                            \
+  }
+PHASE_ROW(PLAIN)
+PHASE_ROW(STABLE)
+PHASE_ROW(PAPER)
 
-CF_CLONES static void add_row(const int n, const cf_real *x, cf_real *y) {
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) y[i] += x[i];
-}
+typedef void phase_row(int n, const stage *s, const stage_row *w);
+static phase_row *const phase_rows[3][2] = {{phase_row_PLAIN, masked_row_PLAIN},
+                                            {phase_row_STABLE, masked_row_STABLE},
+                                            {phase_row_PAPER, masked_row_PAPER}};
 
-CF_CLONES static void multiply_row(const int n, const cf_real *x, cf_real *y) {
+CF_CLONES static void add_row(const int n, const cf_real weight, const cf_real *x, cf_real *y) {
   CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) y[i] *= x[i];
+  for (int i = 0; i < n; ++i) y[i] += weight * x[i];
 }
 
 CF_CLONES static void divide_row(const int n, const cf_real *x, cf_real *y) {
@@ -74,15 +85,9 @@ CF_CLONES static void divide_row(const int n, const cf_real *x, cf_real *y) {
   for (int i = 0; i < n; ++i) y[i] /= x[i];
 }
 
-/* gain = K eta_t, into the rate itself. */
-CF_CLONES static void latent_row(const int n, const cf_real latent, cf_real *rate) {
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) rate[i] *= latent;
-}
-
 typedef struct heat_row {
   ptrdiff_t stride[3];
-  const cf_real *gain; /* a row; the others are fields */
+  const cf_real *rate; /* eta_t, a row; the others are fields */
   const cf_real *T, *start, *start_m, *in_m;
   cf_real *out, *out_m;
   const stage *s;
@@ -102,51 +107,38 @@ CF_KERNEL void heat_loop(const int dim, const int memory, const int n, const hea
   for (int i = 0; i < n; ++i) {
     const ptrdiff_t p = start + i;
     const cf_real spread = s->spread * bend_at(dim, w->stride, w->T, p);
-    cf_real rate = w->gain[i] + spread;
+    cf_real flow = spread;
     if (memory) {
       const cf_real m = w->in_m[p];
-      rate = w->gain[i] + (m + s->f_t * spread);
+      flow = m + s->f_t * spread;
       w->out_m[p] = s->keep * w->start_m[p] + s->pass * m + s->d * ((s->rest_t * spread - m) * s->per_tau_2);
     }
-    w->out[p] = s->keep * w->start[p] + s->pass * w->T[p] + s->d * rate;
+    w->out[p] = s->keep * w->start[p] + s->pass * w->T[p] + s->d * (s->latent * w->rate[i] + flow);
   }
 }
 CF_CLONED_FORMS(heat_loop, const heat_row *, const ptrdiff_t)
 
-/* f into rows->react. */
+/* X becomes X + f, where the row is busy; with Karma and Rappel's tau_eta, which has A^2 in it, (X + f)/A^2. */
 static void react(const cf_phase *p, cf_phase_rows *rows, const stage *s, const ptrdiff_t start) {
-  if (rows->quiet) {
-    memset(rows->react, 0, (size_t)p->grid->box.n[0] * sizeof *rows->react);
-    return;
-  }
-  cf_phase_react f = cf_phase_react_of(p, rows, s->in->eta.at, start);
-  f.T = s->in->T.at + start;
-  cf_phase_react_row(p->grid->box.n[0], &f);
+  const int from = rows->busy.from, n = rows->busy.to - from;
+  cf_phase_react f = cf_phase_react_of(p, rows, n, s->in->eta.at, start + from);
+  f.T = s->in->T.at + start + from;
+  cf_phase_react_row(n, &f);
+  add_row(n, 1, rows->react, rows->div + from);
+  if (!p->p.karma_rappel) return;
+  cf_phase_A2_row(p, n, s->in->eta.at, start + from, rows->A2);
+  divide_row(n, rows->A2, rows->div + from);
 }
 
 static void phase_of_row(const cf_phase *p, cf_phase_rows *rows, const stage *s, const ptrdiff_t start) {
-  const int n = p->grid->box.n[0];
-  stage_row w = {.R = rows->div, .more = rows->react, .rate = rows->rate};
+  const int memory = !p->has_r ? PLAIN : p->p.form == CF_PHASE_PAPER ? PAPER : STABLE;
+  stage_row w = {.R = rows->div, .rate = rows->rate, .more = rows->div};
   w.start = s->start->eta.at + start, w.in = s->in->eta.at + start, w.out = s->out->eta.at + start;
   if (p->has_r)
     w.start_m = s->start->r.at + start, w.in_m = s->in->r.at + start, w.out_m = s->out->r.at + start;
-  if (p->p.form == CF_PHASE_PAPER) {
-    add_row(n, rows->div, rows->react); /* X - X_1 + f */
-    w.R = p->X.at + start;
-  } else if (p->has_r) { /* all of X + f has the memory */
-    add_row(n, rows->react, rows->div);
-    memset(rows->react, 0, (size_t)n * sizeof *rows->react);
-  }
-  if (p->has_r)
-    memory_row(n, s, &w);
-  else
-    plain_row(n, s, &w);
-  if (p->p.karma_rappel && !rows->quiet) {
-    cf_phase_A2_row(p, s->in->eta.at, start, rows->A2);
-    divide_row(n, rows->A2, rows->rate);
-  }
-  if (p->places.mobility.at != NULL) multiply_row(n, p->places.mobility.at + start, rows->rate);
-  phase_row(n, s, &w);
+  if (memory == PAPER) w.R = p->X.at + start; /* div is X - X_1 + f */
+  if (p->places.mobility.at != NULL) w.mobility = p->places.mobility.at + start;
+  phase_rows[memory][w.mobility != NULL](p->grid->box.n[0], s, &w);
 }
 
 static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start, const ptrdiff_t r,
@@ -154,10 +146,8 @@ static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start,
   const stage *s = context;
   const cf_box *box = &p->grid->box;
   (void)r;
-  react(p, rows, s, start);
+  if (rows->busy.from < rows->busy.to) react(p, rows, s, start);
   phase_of_row(p, rows, s, start);
-  latent_row(box->n[0], s->latent, rows->rate);
-  if (s->W != NULL) add_row(box->n[0], s->W + start, rows->rate);
   const heat_row heat = {{box->stride[0], box->stride[1], box->stride[2]},
                          rows->rate,
                          s->in->T.at,
@@ -168,6 +158,7 @@ static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start,
                          s->out->w.at,
                          s};
   heat_loop_by_form(box->dim, p->has_w, box->n[0], &heat, start);
+  if (s->W != NULL) add_row(box->n[0], s->d, s->W + start, s->out->T.at + start);
 }
 
 static void keep_X_1(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start, const ptrdiff_t r,
@@ -223,8 +214,9 @@ static void run_stage(cf_phase *p, const double t, const double keep, stage *s, 
   cf_wall_ghosts(&p->T_walls, s->in->T);
   const double rate = through_walls(p, s->in, s->leaks);
   if (heat_in != NULL) *heat_in += s->weight * rate;
-  if (q->form == CF_PHASE_PAPER) cf_phase_each_row(p, CF_PHASE_X_1, s->in->eta, keep_X_1, NULL);
-  cf_phase_each_row(p, q->form == CF_PHASE_PAPER ? CF_PHASE_X_2 : CF_PHASE_X, s->in->eta, visit, s);
+  const bool paper = q->form == CF_PHASE_PAPER && p->has_r; /* without a memory the forms are one */
+  if (paper) cf_phase_each_row(p, CF_PHASE_X_1, s->in->eta, keep_X_1, NULL);
+  cf_phase_each_row(p, paper ? CF_PHASE_X_2 : CF_PHASE_X, s->in->eta, visit, s);
 }
 
 static void three_stages(cf_phase *p, const double t, const double dt, const cf_phase_explicit *how,

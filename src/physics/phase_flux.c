@@ -15,6 +15,7 @@
  */
 #include <string.h>
 
+#include "base/lanes.h"
 #include "grid/halo.h"
 #include "physics/phase_part.h"
 
@@ -130,22 +131,46 @@ static faces faces_of(const cf_phase *p, const cf_phase_part part, const cf_cell
   return f;
 }
 
-/* --- rows with nothing in them ---------------------------------------------------------------------------- */
+/* --- where there is something ------------------------------------------------------------------------------ */
 
-CF_CLONES static cf_real largest_in_row(const int n, const cf_real *row) {
+#define BLOCK 16
+
+/* Whether a block of cells has nothing but 0. */
+CF_KERNEL bool is_empty(const cf_real *block) {
   cf_real most = 0;
 #pragma omp simd reduction(max : most)
-  for (int i = 0; i < n; ++i) {
-    const cf_real size = row[i] < 0 ? -row[i] : row[i];
+  for (int i = 0; i < BLOCK; ++i) {
+    const cf_real size = block[i] < 0 ? -block[i] : block[i];
     most = size > most ? size : most;
   }
-  return most;
+  return most == 0;
 }
 
-void cf_phase_find_rows(const cf_phase *p, const cf_cell eta) {
+/* The row of eta is 0 but for whole blocks from the first to the last in which it is not. */
+CF_CLONES static void fill_span(const int n, const cf_real *row, cf_span *filled) {
+  int from = 0, to = n;
+  while (from + BLOCK <= n && is_empty(row + from)) from += BLOCK;
+  while (to - BLOCK >= from && is_empty(row + to - BLOCK)) to -= BLOCK;
+  filled->from = from;
+  filled->to = to;
+}
+
+static bool has_held_wall(const cf_phase *p) {
+  for (int a = 0; a < p->grid->box.dim; ++a)
+    for (int side = 0; side < 2; ++side)
+      if (p->eta_walls.at[a][side] != NULL) return true;
+  return false;
+}
+
+void cf_phase_find_filled(const cf_phase *p, const cf_cell eta) {
   const cf_box *box = &p->grid->box;
-  CF_PARALLEL_ROWS (box, p->grid->threads, r)
-    p->sums[r] = (double)largest_in_row(box->n[0], eta.at + cf_box_row(box, r));
+  const bool held = has_held_wall(p);
+  CF_PARALLEL_ROWS (box, p->grid->threads, r) {
+    if (held)
+      p->filled[r] = (cf_span){0, box->n[0]};
+    else
+      fill_span(box->n[0], eta.at + cf_box_row(box, r), &p->filled[r]);
+  }
 }
 
 static int inside(const cf_phase *p, const int a, const int i) {
@@ -155,20 +180,18 @@ static int inside(const cf_phase *p, const int a, const int i) {
   return i < 0 ? 0 : n - 1;
 }
 
-bool cf_phase_is_quiet(const cf_phase *p, const int j, const int k) {
+cf_span cf_phase_busy(const cf_phase *p, const int j, const int k) {
   const cf_box *box = &p->grid->box;
-  const int reach = box->dim == 3 ? 1 : 0;
+  const int n = box->n[0], reach = box->dim == 3 ? 1 : 0;
+  int from = n, to = 0;
   for (int c = -reach; c <= reach; ++c)
-    for (int b = -1; b <= 1; ++b)
-      if (p->sums[inside(p, 1, j + b) + (ptrdiff_t)box->n[1] * inside(p, 2, k + c)] != 0) return false;
-  return true;
-}
-
-bool cf_phase_has_held_wall(const cf_phase *p) {
-  for (int a = 0; a < p->grid->box.dim; ++a)
-    for (int side = 0; side < 2; ++side)
-      if (p->eta_walls.at[a][side] != NULL) return true;
-  return false;
+    for (int b = -1; b <= 1; ++b) {
+      const cf_span s = p->filled[inside(p, 1, j + b) + (ptrdiff_t)box->n[1] * inside(p, 2, k + c)];
+      if (s.from < s.to) from = CF_MIN(from, s.from), to = CF_MAX(to, s.to);
+    }
+  if (from >= to) return (cf_span){0, 0};
+  if ((from == 0 || to == n) && p->eta_walls.walls.kind[0][0] == CF_WALL_PERIODIC) return (cf_span){0, n};
+  return (cf_span){CF_MAX(from - CF_WIDE, 0), CF_MIN(to + CF_WIDE, n)};
 }
 
 /* --- slabs ------------------------------------------------------------------------------------------------ */
@@ -178,7 +201,6 @@ typedef struct slab {
   cf_phase_rows *rows;
   faces f;
   faces_row *row;
-  bool held;
   cf_phase_visit *visit;
   void *context;
 } slab;
@@ -187,63 +209,86 @@ static bool is_closed(const cf_phase *p, const int a, const int side) {
   return p->eta_walls.walls.kind[a][side] == CF_WALL_INSULATED;
 }
 
+/* 0 outside the span of n cells. */
+static void clear_around(const int n, const cf_span span, cf_real *row) {
+  memset(row, 0, (size_t)span.from * sizeof *row);
+  memset(row + span.to, 0, (size_t)(n - span.to) * sizeof *row);
+}
+
 /* Faces number i of axis a (a wall at 0 and n) of the row that starts at `start`, into out. */
-static void face_row(slab *s, const int a, const int i, const ptrdiff_t start, cf_real *out) {
+static void face_row(slab *s, const int a, const int i, const ptrdiff_t start, const cf_span busy,
+                     cf_real *out) {
   const cf_box *box = &s->p->grid->box;
   if ((i == 0 && is_closed(s->p, a, 0)) || (i == box->n[a] && is_closed(s->p, a, 1))) {
     memset(out, 0, (size_t)box->n[0] * sizeof *out);
     return;
   }
-  s->f.out = out;
-  s->row(a, box->n[0], &s->f, start);
+  clear_around(box->n[0], busy, out);
+  s->f.out = out + busy.from;
+  s->row(a, busy.to - busy.from, &s->f, start + busy.from);
 }
 
-CF_CLONES static void div_row(const int n, const cf_phase_rows *w, const cf_real *z_low, cf_real *div) {
+/* The faces in x, the high wall's included. Past the busy part they are 0. */
+static void faces_in_x(slab *s, const ptrdiff_t start, const cf_span busy) {
+  const int n = s->p->grid->box.n[0], last = busy.to == n && !is_closed(s->p, 0, 1);
+  cf_real *x = s->rows->x;
+  clear_around(n + 1, busy, x);
+  s->f.out = x + busy.from;
+  s->row(0, busy.to - busy.from + last, &s->f, start + busy.from);
+  if (is_closed(s->p, 0, 0)) x[0] = 0;
+}
+
+CF_CLONES static void div_row(const cf_span busy, const cf_phase_rows *w, const cf_real *z_low,
+                              cf_real *div) {
   if (z_low == NULL) {
     CF_ROW_LOOP
-    for (int i = 0; i < n; ++i) div[i] = (w->x[i + 1] - w->x[i]) + (w->y[i] - w->low[i]);
+    for (int i = busy.from; i < busy.to; ++i) div[i] = (w->x[i + 1] - w->x[i]) + (w->y[i] - w->low[i]);
     return;
   }
   CF_ROW_LOOP
-  for (int i = 0; i < n; ++i)
+  for (int i = busy.from; i < busy.to; ++i)
     div[i] = ((w->x[i + 1] - w->x[i]) + (w->y[i] - w->low[i])) + (w->z[i] - z_low[i]);
 }
 
+static void swap_rows(cf_real **a, cf_real **b) {
+  cf_real *const kept = *a;
+  *a = *b;
+  *b = kept;
+}
+
+/* X into div: of rows that have been visited there are the fluxes on low faces. */
 static void row_of_slab(slab *s, const int j, const int k) {
   const cf_box *box = &s->p->grid->box;
   cf_phase_rows *w = s->rows;
   const int n = box->n[0];
-  const size_t bytes = (size_t)n * sizeof *w->y;
   const ptrdiff_t start = cf_box_at(box, 0, j, k);
   cf_real *z_low = box->dim == 3 ? w->plane + (ptrdiff_t)n * j : NULL;
-  w->quiet = !s->held && cf_phase_is_quiet(s->p, j, k);
-  if (w->quiet) {
-    memset(w->div, 0, bytes);
-    memset(w->low, 0, bytes);
-    if (z_low != NULL) memset(z_low, 0, bytes);
-    return;
+  const cf_span busy = w->busy = cf_phase_busy(s->p, j, k);
+  clear_around(n, busy, w->div);
+  if (busy.from < busy.to) {
+    faces_in_x(s, start, busy);
+    face_row(s, 1, j + 1, start + box->stride[1], busy, w->y);
+    if (z_low != NULL) face_row(s, 2, k + 1, start + box->stride[2], busy, w->z);
+    div_row(busy, w, z_low, w->div);
+  } else {
+    memset(w->y, 0, (size_t)n * sizeof *w->y);
+    if (z_low != NULL) memset(w->z, 0, (size_t)n * sizeof *w->z);
   }
-  s->f.out = w->x;
-  s->row(0, n + 1, &s->f, start);
-  if (is_closed(s->p, 0, 0)) w->x[0] = 0;
-  if (is_closed(s->p, 0, 1)) w->x[n] = 0;
-  face_row(s, 1, j + 1, start + box->stride[1], w->y);
-  if (z_low != NULL) face_row(s, 2, k + 1, start + box->stride[2], w->z);
-  div_row(n, w, z_low, w->div);
-  memcpy(w->low, w->y, bytes);
-  if (z_low != NULL) memcpy(z_low, w->z, bytes);
+  swap_rows(&w->y, &w->low);
+  if (z_low != NULL) memcpy(z_low, w->z, (size_t)n * sizeof *w->z);
 }
 
 /* Rows [from, to) of the outermost axis. */
 static void run_slab(slab *s, const int from, const int to) {
   const cf_box *box = &s->p->grid->box;
   const bool space = box->dim == 3;
+  const cf_span all = {0, box->n[0]};
   if (space)
     for (int j = 0; j < box->n[1]; ++j)
-      face_row(s, 2, from, cf_box_at(box, 0, j, from), s->rows->plane + (ptrdiff_t)box->n[0] * j);
+      face_row(s, 2, from, cf_box_at(box, 0, j, from), all, s->rows->plane + (ptrdiff_t)box->n[0] * j);
   for (int k = space ? from : 0; k < (space ? to : 1); ++k) {
     const int first = space ? 0 : from, last = space ? box->n[1] : to;
-    face_row(s, 1, first, cf_box_at(box, 0, first, k), s->rows->low);
+    face_row(s, 1, first, cf_box_at(box, 0, first, k), all, s->rows->low);
     for (int j = first; j < last; ++j) {
       row_of_slab(s, j, k);
       s->visit(s->p, s->rows, cf_box_at(box, 0, j, k), j + (ptrdiff_t)box->n[1] * k, s->context);
@@ -258,11 +303,10 @@ void cf_phase_each_row(const cf_phase *p, const cf_phase_part part, const cf_cel
   const int threads = CF_MIN(CF_MIN(p->threads, cf_sweep_threads(box, p->grid->threads)), outer);
   const faces f = faces_of(p, part, eta);
   faces_row *const row = faces_row_of(box->dim, p->law.facets, p->places.strength.at != NULL);
-  const bool held = cf_phase_has_held_wall(p);
-  cf_phase_find_rows(p, eta);
+  cf_phase_find_filled(p, eta);
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (int t = 0; t < threads; ++t) {
-    slab s = {p, &p->rows[t], f, row, held, visit, context};
+    slab s = {p, &p->rows[t], f, row, visit, context};
     run_slab(&s, (int)((ptrdiff_t)outer * t / threads), (int)((ptrdiff_t)outer * (t + 1) / threads));
   }
 }

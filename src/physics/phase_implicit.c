@@ -44,7 +44,7 @@ typedef struct stage {
 /* tau_eta of the cells of a row, with mobility and A^2 in it. */
 static void tau_row(const cf_phase *p, cf_phase_rows *rows, const cf_real *eta, const ptrdiff_t start) {
   const int n = p->grid->box.n[0];
-  if (p->p.karma_rappel) cf_phase_A2_row(p, eta, start, rows->A2);
+  if (p->p.karma_rappel) cf_phase_A2_row(p, n, eta, start, rows->A2);
   for (int i = 0; i < n; ++i) {
     const double A2 = p->p.karma_rappel ? (double)rows->A2[i] : 1;
     const double mobility = p->places.mobility.at != NULL ? (double)p->places.mobility.at[start + i] : 1;
@@ -82,7 +82,7 @@ static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start,
   const stage *s = context;
   const cf_box *box = &p->grid->box;
   (void)r;
-  cf_phase_react f = cf_phase_react_of(p, rows, p->x.at, start);
+  cf_phase_react f = cf_phase_react_of(p, rows, box->n[0], p->x.at, start);
   f.T = p->h.at + start;
   f.lean = rows->x; /* the fluxes in x have been used */
   cf_phase_react_row(box->n[0], &f);

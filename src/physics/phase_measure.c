@@ -44,7 +44,6 @@ typedef struct density {
   const cf_real *eta, *T, *r;
   const cf_real *A2, *beta;
   cf_real half_star2[3]; /* Gamma^2/(2 h^2) */
-  bool held;             /* there is a wall with a value */
   cf_real half_eps2, alpha_pi, gamma, coupling, inertia;
   cf_real *out;
 } density;
@@ -84,7 +83,7 @@ CF_CLONES static void inertia_row(const int n, const density *d, const ptrdiff_t
 
 static density density_of(const cf_phase *p, const cf_phase_state *y) {
   const cf_phase_params *q = &p->p;
-  density d = {.eta = y->eta.at, .T = y->T.at, .r = y->r.at, .held = cf_phase_has_held_wall(p)};
+  density d = {.eta = y->eta.at, .T = y->T.at, .r = y->r.at};
   d.half_eps2 = (cf_real)(q->width * q->width / 2);
   d.alpha_pi = (cf_real)(q->alpha / PI), d.gamma = (cf_real)q->gamma, d.coupling = (cf_real)q->coupling;
   if (p->has_r && q->form == CF_PHASE_STABLE && q->tau_eta > 0)
@@ -104,16 +103,17 @@ static void density_of_row(const cf_phase *p, const density *all, const cf_phase
   const ptrdiff_t start = cf_box_row(box, r);
   density d = *all;
   d.A2 = w->A2, d.beta = w->beta, d.out = w->react;
-  if (!d.held && cf_phase_is_quiet(p, (int)(r % box->n[1]), (int)(r / box->n[1]))) {
-    memset(d.out, 0, (size_t)n * sizeof *d.out);
-  } else {
-    cf_phase_A2_row(p, d.eta, start, w->A2);
-    if (p->p.drive_strength != 0)
-      cf_phase_beta_row(p, d.eta, start, w->beta);
-    else
-      for (int i = 0; i < n; ++i) w->beta[i] = 1;
-    density_row_by_form(box->dim, p->p.karma_rappel, n, &d, start);
-  }
+  const cf_span busy = cf_phase_busy(p, (int)(r % box->n[1]), (int)(r / box->n[1]));
+  const int some = busy.to - busy.from;
+  memset(d.out, 0, (size_t)n * sizeof *d.out);
+  d.out += busy.from;
+  cf_phase_A2_row(p, some, d.eta, start + busy.from, w->A2);
+  if (p->p.drive_strength != 0)
+    cf_phase_beta_row(p, some, d.eta, start + busy.from, w->beta);
+  else
+    for (int i = 0; i < some; ++i) w->beta[i] = 1;
+  density_row_by_form(box->dim, p->p.karma_rappel, some, &d, start + busy.from);
+  d.out -= busy.from;
   if (d.inertia > 0) inertia_row(n, &d, start);
 }
 
@@ -122,7 +122,7 @@ double cf_phase_energy(cf_phase *p, const cf_phase_state *y) {
   const density d = density_of(p, y);
   const ptrdiff_t rows = cf_box_rows(box);
   cf_phase_ghosts(p, y->eta);
-  cf_phase_find_rows(p, y->eta);
+  cf_phase_find_filled(p, y->eta);
   CF_PARALLEL_ROWS (box, p->threads, r) {
     const cf_phase_rows *w = &p->rows[omp_get_thread_num()];
     density_of_row(p, &d, w, r);
@@ -201,6 +201,13 @@ static void look_in_row(const cf_phase *p, const crossings *like, const double f
   }
 }
 
+CF_CLONES static cf_real largest_in_row(const int n, const cf_real *row) {
+  cf_real most = 0;
+#pragma omp simd reduction(max : most)
+  for (int i = 0; i < n; ++i) most = row[i] > most ? row[i] : most;
+  return most;
+}
+
 static double bound_of(const cf_phase *p, const crossings *like, const double from[3], const ptrdiff_t r) {
   const cf_box *box = &p->grid->box;
   double most = -INFINITY;
@@ -225,7 +232,8 @@ double cf_phase_tip(const cf_phase *p, const cf_cell eta, const double from[3], 
   ptrdiff_t farthest = 0;
   int i = 0;
   for (int b = 0; b < 3; ++b) where[b] = b < box->dim ? from[b] : 0;
-  cf_phase_find_rows(p, eta);
+  CF_PARALLEL_ROWS (box, p->grid->threads, r)
+    p->sums[r] = (double)largest_in_row(box->n[0], eta.at + cf_box_row(box, r));
   CF_PARALLEL_ROWS (box, p->grid->threads, r) bound[r] = bound_of(p, &like, from, r);
   for (ptrdiff_t r = 0; r < rows; ++r)
     if (bound[r] > bound[farthest]) farthest = r;

@@ -15,6 +15,11 @@
 #include "grid/sweep.h"
 #include "physics/phase.h"
 
+/* Cells from <= i < to of a row. */
+typedef struct cf_span {
+  int from, to;
+} cf_span;
+
 /* Rows and planes of one thread. */
 typedef struct cf_phase_rows {
   cf_real *x;         /* fluxes on the low faces of a row in x, and its high wall */
@@ -22,7 +27,7 @@ typedef struct cf_phase_rows {
   cf_real *plane, *z; /* on the low faces of a plane in z; on the high faces of a row */
   cf_real *div;       /* X */
   cf_real *react, *rate, *beta, *A2;
-  bool quiet; /* the row that is visited has nothing but 0 in and around it */
+  cf_span busy; /* of the row that is visited: outside it X and f are 0 */
 } cf_phase_rows;
 
 struct cf_phase {
@@ -42,8 +47,9 @@ struct cf_phase {
   cf_helmholtz *A;         /* of implicit steps, and their fields */
   cf_cell x, b, alpha, X, h;
   cf_face beta;
-  double beta_is; /* which number beta stands for */
-  double *sums;   /* 3 a row of the box */
+  double beta_is;  /* which number beta stands for */
+  double *sums;    /* 3 a row of the box */
+  cf_span *filled; /* where eta is not 0, per row of the box */
 };
 
 /* --- the divergence --------------------------------------------------------------------------------------- */
@@ -55,11 +61,10 @@ typedef enum cf_phase_part { CF_PHASE_X, CF_PHASE_X_1, CF_PHASE_X_2 } cf_phase_p
 void cf_phase_each_row(const cf_phase *p, cf_phase_part part, cf_cell eta, cf_phase_visit *visit,
                        void *context);
 
-/* sums[r] becomes the largest |eta| of row r; then, unless a wall is held at something, X is 0 in the quiet rows: those
- * where it and its neighbours have 0. */
-void cf_phase_find_rows(const cf_phase *p, cf_cell eta);
-bool cf_phase_is_quiet(const cf_phase *p, int j, int k);
-bool cf_phase_has_held_wall(const cf_phase *p);
+/* Looks where in each row eta is not 0. Then X and f are 0 outside the busy part of row (j, k): what has something in it
+ * or next to it. With a wall that is held at something the whole row is busy. */
+void cf_phase_find_filled(const cf_phase *p, cf_cell eta);
+cf_span cf_phase_busy(const cf_phase *p, int j, int k);
 
 /* --- rows ------------------------------------------------------------------------------------------------- */
 
@@ -73,12 +78,12 @@ typedef struct cf_phase_react {
 } cf_phase_react;
 void cf_phase_react_row(int n, const cf_phase_react *f);
 
-/* beta(v) of eq. 27, and A^2, from central differences at the cells of a row. */
-void cf_phase_beta_row(const cf_phase *p, const cf_real *eta, ptrdiff_t start, cf_real *beta);
-void cf_phase_A2_row(const cf_phase *p, const cf_real *eta, ptrdiff_t start, cf_real *A2);
+/* beta(v) of eq. 27, and A^2, from central differences at n cells from `start` on. */
+void cf_phase_beta_row(const cf_phase *p, int n, const cf_real *eta, ptrdiff_t start, cf_real *beta);
+void cf_phase_A2_row(const cf_phase *p, int n, const cf_real *eta, ptrdiff_t start, cf_real *A2);
 
-/* What f needs beside eta and T, made ready for the row at `start`. */
-cf_phase_react cf_phase_react_of(const cf_phase *p, const cf_phase_rows *rows, const cf_real *eta,
+/* What f needs beside eta and T, made ready for n cells from `start` on. */
+cf_phase_react cf_phase_react_of(const cf_phase *p, const cf_phase_rows *rows, int n, const cf_real *eta,
                                  ptrdiff_t start);
 
 /* One layer of ghosts, corners included. */

@@ -172,20 +172,21 @@ static central central_of(const cf_phase *p, const cf_real *eta, cf_real *out) {
   return c;
 }
 
-void cf_phase_beta_row(const cf_phase *p, const cf_real *eta, const ptrdiff_t start, cf_real *beta) {
+void cf_phase_beta_row(const cf_phase *p, const int n, const cf_real *eta, const ptrdiff_t start,
+                       cf_real *beta) {
   central c = central_of(p, eta, beta);
   if (c.e == NULL)
     c.facing = (cf_facing){(cf_real)p->p.drive_strength, (cf_real)p->drive_C, (cf_real)p->drive_S};
-  beta_row_by_form(p->grid->box.dim, c.e != NULL, p->grid->box.n[0], &c, start);
+  beta_row_by_form(p->grid->box.dim, c.e != NULL, n, &c, start);
 }
 
-void cf_phase_A2_row(const cf_phase *p, const cf_real *eta, const ptrdiff_t start, cf_real *A2) {
+void cf_phase_A2_row(const cf_phase *p, const int n, const cf_real *eta, const ptrdiff_t start, cf_real *A2) {
   const central c = central_of(p, eta, A2);
-  square_row_by_form(p->grid->box.dim, c.e != NULL, p->grid->box.n[0], &c, start);
+  square_row_by_form(p->grid->box.dim, c.e != NULL, n, &c, start);
 }
 
-cf_phase_react cf_phase_react_of(const cf_phase *p, const cf_phase_rows *rows, const cf_real *eta,
-                                 const ptrdiff_t start) {
+cf_phase_react cf_phase_react_of(const cf_phase *p, const cf_phase_rows *rows, const int n,
+                                 const cf_real *eta, const ptrdiff_t start) {
   cf_phase_react f = {.eta = eta + start, .react = rows->react, .karma = p->p.karma_rappel};
   f.gamma = (cf_real)p->p.gamma;
   f.alpha_pi = (cf_real)(p->p.alpha / 3.14159265358979323846);
@@ -193,7 +194,7 @@ cf_phase_react cf_phase_react_of(const cf_phase *p, const cf_phase_rows *rows, c
   f.coupling = (cf_real)p->p.coupling;
   if (p->places.noise.at != NULL) f.noise = p->places.noise.at + start;
   if (p->p.drive_strength == 0) return f;
-  cf_phase_beta_row(p, eta, start, rows->beta);
+  cf_phase_beta_row(p, n, eta, start, rows->beta);
   f.beta = rows->beta;
   return f;
 }

@@ -95,7 +95,7 @@ static void driving_force_is_that_of_the_table(void **state) {
         c.y.T.at[p] = (cf_real)table_at(&t, r, "T");
       }
       const ptrdiff_t start = cf_box_at(&c.g.box, 0, 1, 1);
-      cf_phase_react f = cf_phase_react_of(c.p, &c.p->rows[0], c.y.eta.at, start);
+      cf_phase_react f = cf_phase_react_of(c.p, &c.p->rows[0], c.g.box.n[0], c.y.eta.at, start);
       f.T = c.y.T.at + start;
       cf_phase_react_row(3, &f);
       const double e = (double)c.y.eta.at[start + 1];
