@@ -84,7 +84,7 @@ static void take_look(cf_showing *s, const cf_arguments *a) {
   l->framed = a->width > 0 || r->size.count == 2;
   l->width = a->width > 0 ? a->width : l->framed ? (int)r->size.value[0] : WIDTH;
   l->height = a->height > 0 ? a->height : l->framed ? (int)r->size.value[1] : HEIGHT;
-  l->samples = (int)r->samples;
+  l->samples = (int)r->samples, l->noise = r->noise;
   l->threads = a->threads > 0 ? a->threads : omp_get_num_procs();
   l->exposure = r->exposure, l->strength = r->strength, l->level = r->level;
   l->map = r->map[0] != '\0' ? r->map : NULL;

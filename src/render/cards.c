@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * The parallelogram of a flake on the picture is M (u, v), -1 <= u, v <= 1, M = Rot(phi) diag(s_1, s_2) Rot(theta). It is
- * widened to sqrt(s^2 + w^2), with w the distance of the copies and at least about half a pixel, and made as much
- * fainter: flakes smaller than a pixel neither flicker nor vanish.
+ * widened to sqrt(s^2 + w^2), with w a part of the distance of the places where it is worked out and at least about half
+ * a pixel, and made as much fainter: flakes smaller than that neither flicker nor vanish.
  */
 #include "render/cards.h"
 
@@ -13,12 +13,14 @@
 #include "base/mem.h"
 #include "base/real.h"
 #include "grid/sweep.h"
+#include "render/disc.h"
 #include "render/sample.h"
 
-enum { TILE = 64, COPIES_MOST = 40, SIDE_MOST = 8192, STEP_MOST = 8 };
+enum { TILE = 64, COPIES_MOST = 400, SIDE_MOST = 8192, STEP_MOST = 4096 };
 
 #define PIXEL_SIGMA 0.5f  /* w is at least this, pixels: tents of the smallest flakes add up to 1 on pixels */
 #define NEAREST     0.02f /* of the focus: flakes nearer than that are not seen */
+#define SHARP       0.6f  /* a blur of so many pixels is no more than widening does */
 #define LETS_BY     0.2f  /* ice lets so much of what is behind through */
 #define GLINT_WIDTH 0.16f /* radians */
 
@@ -131,40 +133,47 @@ static bool sprite_make(sprite *s, const cf_cards *all, const int64_t i, const c
   s->move[0] = shutter * scale * cf_vec_dot(card->velocity, lens->right);
   s->move[1] = -shutter * scale * cf_vec_dot(card->velocity, lens->up);
   const float way = sqrtf(s->move[0] * s->move[0] + s->move[1] * s->move[1]);
-  s->copies = (int)fminf(1 + 1.8f * s->blur * s->blur + 1.3f * way, COPIES_MOST);
-  const float apart = 1.7f * s->blur / sqrtf((float)s->copies) + 0.7f * way / (float)s->copies;
-  const float w = fmaxf(PIXEL_SIGMA, 0.7f * apart);
+  for (s->step = 1; s->step < STEP_MOST && 6 * (float)s->step <= s->blur;) s->step *= 2;
+  s->copies = (int)fminf(1 + 1.3f * way / (float)s->step, COPIES_MOST);
+  const float gap = way / (float)s->copies, apart = fmaxf((float)s->step, gap);
+  const float w = fmaxf(PIXEL_SIGMA * (float)s->step, 0.6f * gap);
   const float m[2][2] = {
       {scale * cf_vec_dot(card->right, lens->right), scale * cf_vec_dot(card->up, lens->right)},
       {-scale * cf_vec_dot(card->right, lens->up), -scale * cf_vec_dot(card->up, lens->up)}};
   widen(s, m, w);
-  /* What the copies do not blur the texture must not show: its texels are as wide as the copies are apart. */
+  /* Its texels are as wide as the places, or the copies, are apart. */
   const float texels = (float)p->side / (2 * (apart > 1 ? s->narrow : s->even)) * fmaxf(1, apart);
   /* Texels a little finer than pixels look sharper; of a flake of few texels they would miss pixels. */
   const float finer = apart > 1 || 8 * texels > (float)p->side ? 0 : 0.6f;
   s->level = (int)fminf(fmaxf(ceilf(log2f(fmaxf(texels, 1)) - finer), 0), (float)(p->levels - 1));
-  for (s->step = 1; s->step < STEP_MOST && 2 * (float)s->step <= 0.6f * apart;) s->step *= 2;
   const float more = 1 + 1 / (float)(p->side >> s->level); /* a texel lies across the edge */
   for (int a = 0; a < 2; ++a) s->wide[a] = more * s->reach[a] + s->blur + 0.5f * fabsf(s->move[a]) + 1;
   return s->x + s->wide[0] > 0 && s->y + s->wide[1] > 0 && s->x - s->wide[0] < (float)lens->width &&
          s->y - s->wide[1] < (float)lens->height && s->blur < (float)lens->height && s->faint > 0;
 }
 
-/* The place of copy k: on a sunflower's spiral over the lens (Vogel 1979), and even in time. */
+/* The place of copy k, at its moment while the shutter is open. */
 static void copy_offset(const sprite *s, const int k, float off[2]) {
-  const float n = (float)k + 0.5f, r = s->blur * sqrtf(n / (float)s->copies), angle = 2.39996323f * n;
-  const float when = 0.7548777f * n, time = s->copies > 1 ? when - floorf(when) - 0.5f : 0;
-  off[0] = (s->copies > 1 ? r * cosf(angle) : 0) + time * s->move[0];
-  off[1] = (s->copies > 1 ? r * sinf(angle) : 0) + time * s->move[1];
+  const float time = ((float)k + 0.5f) / (float)s->copies - 0.5f;
+  for (int a = 0; a < 2; ++a) off[a] = time * s->move[a];
 }
 
 /* --- drawing one into a tile --------------------------------------------------------------------------------------------- */
 
-/* Where a sprite is worked out: every `step` pixels, at places that all tiles share. */
+/* Places every `step` pixels, which all tiles share: (i0 + i, j0 + j), each at pixel (i0 + i) step. */
+typedef struct places {
+  int step, i0, j0, n, rows;
+  ptrdiff_t row; /* from one row to the next */
+  float (*at)[4];
+} places;
+
+/* Places across a tile at most, and more at both of their ends that the lens brings in: its radius is below 6 steps. */
+enum { ACROSS = TILE + 2, AROUND = 7 };
+
 typedef struct patch {
-  int x0, y0, x1, y1;        /* pixels of the tile that it touches */
-  int step, i0, j0, n, rows; /* places i0 .. i0 + n - 1 across, each at pixel i step */
-  float at[(TILE + 2) * (TILE + 2)][4];
+  int x0, y0, x1, y1; /* pixels of the tile that the sprite touches */
+  places seen;
+  float drawn[(ACROSS + 2 * AROUND) * (ACROSS + 2 * AROUND + 1)][4], soft[ACROSS * ACROSS][4];
 } patch;
 
 static void patch_begin(patch *b, const sprite *s, const int tile[4]) {
@@ -172,14 +181,12 @@ static void patch_begin(patch *b, const sprite *s, const int tile[4]) {
   b->y0 = CF_MAX((int)floorf(s->y - s->wide[1]), tile[1]);
   b->x1 = CF_MIN((int)ceilf(s->x + s->wide[0]) + 1, tile[2]);
   b->y1 = CF_MIN((int)ceilf(s->y + s->wide[1]) + 1, tile[3]);
-  b->n = b->rows = 0;
+  b->seen = (places){.step = s->step};
   if (b->x0 >= b->x1 || b->y0 >= b->y1) return;
   const int more = s->step > 1 ? 1 : 0;
-  b->step = s->step;
-  b->i0 = b->x0 / b->step, b->j0 = b->y0 / b->step;
-  b->n = (b->x1 - 1) / b->step - b->i0 + 1 + more;
-  b->rows = (b->y1 - 1) / b->step - b->j0 + 1 + more;
-  memset(b->at, 0, (size_t)b->n * (size_t)b->rows * sizeof b->at[0]);
+  b->seen.i0 = b->x0 / s->step, b->seen.j0 = b->y0 / s->step;
+  b->seen.n = (b->x1 - 1) / s->step - b->seen.i0 + 1 + more;
+  b->seen.rows = (b->y1 - 1) / s->step - b->seen.j0 + 1 + more;
 }
 
 /* A texel's four numbers, which are always treated alike. */
@@ -191,7 +198,8 @@ static inline four load(const float *at) {
   return v;
 }
 
-CF_CLONES static void add_copy(const sprite *s, const cf_flake_picture *p, const float off[2], patch *b) {
+CF_CLONES static void add_copy(const sprite *s, const cf_flake_picture *p, const float off[2],
+                               const places *b) {
   const float x = s->x + off[0] - 0.5f, y = s->y + off[1] - 0.5f, part = s->faint / (float)s->copies;
   const int side = p->side >> s->level;
   const ptrdiff_t row = 4 * ((ptrdiff_t)side + 2);
@@ -212,20 +220,48 @@ CF_CLONES static void add_copy(const sprite *s, const cf_flake_picture *p, const
       const float a = tx - (float)m, c = ty - (float)n, far = part * c, near = part - far;
       const four above = (1 - a) * load(t) + a * load(t + 4);
       const four below = (1 - a) * load(t + row) + a * load(t + row + 4);
-      float *out = b->at[j * b->n + i];
+      float *out = b->at[j * b->row + i];
       const four sum = load(out) + (near * above + far * below);
       memcpy(out, &sum, sizeof sum);
     }
 }
 
+/* All copies. */
+static void draw(const sprite *s, const cf_flake_picture *p, const places *b) {
+  memset(b->at, 0, (size_t)b->row * (size_t)b->rows * sizeof b->at[0]);
+  for (int k = 0; k < s->copies; ++k) {
+    float off[2];
+    copy_offset(s, k, off);
+    add_copy(s, p, off, b);
+  }
+}
+
+/* As the lens shows it. */
+static void patch_draw(patch *b, const sprite *s, const cf_flake_picture *p) {
+  const float r = s->blur / (float)s->step;
+  places wide = b->seen;
+  wide.at = b->drawn, wide.row = wide.n;
+  if (s->blur > SHARP) {
+    const int m = cf_disc_margin(r);
+    wide.i0 -= m, wide.j0 -= m, wide.n += 2 * m, wide.rows += 2 * m, wide.row = wide.n + 1;
+    draw(s, p, &wide);
+    cf_disc_blur(b->drawn, b->seen.n, b->seen.rows, r, b->soft);
+    b->seen.at = b->soft;
+  } else {
+    draw(s, p, &wide);
+    b->seen.at = b->drawn;
+  }
+  b->seen.row = b->seen.n;
+}
+
 /* The value at a pixel, between the places. */
-static void patch_at(const patch *b, const int x, const int y, float t[4]) {
+static void patch_at(const places *b, const int x, const int y, float t[4]) {
   const int i = x / b->step - b->i0, j = y / b->step - b->j0;
-  const float *one = b->at[j * b->n + i];
+  const float *one = b->at[j * b->row + i];
   for (int m = 0; m < 4; ++m) t[m] = one[m];
   if (b->step == 1) return;
   const float a = (float)(x % b->step) / (float)b->step, c = (float)(y % b->step) / (float)b->step;
-  const float *two = b->at[(j + 1) * b->n + i];
+  const float *two = b->at[(j + 1) * b->row + i];
   for (int m = 0; m < 4; ++m) {
     const float above = one[m] + a * (one[4 + m] - one[m]), below = two[m] + a * (two[4 + m] - two[m]);
     t[m] = above + c * (below - above);
@@ -283,7 +319,7 @@ static void lay_over(const sprite *s, const cf_cards *all, const cf_cards_light 
     for (int i = b->x0; i < b->x1; ++i) {
       const size_t p = (size_t)j * (size_t)film->width + (size_t)i;
       float t[4];
-      patch_at(b, i, j, t);
+      patch_at(&b->seen, i, j, t);
       if (t[0] <= 0 || film->distance[p] < s->depth) continue;
       const float cover = fminf(t[0], 1), left = 1 - (1 - LETS_BY) * cover;
       const cf_vec fog = cf_vec_scale((1 - how.kept) * (1 - LETS_BY) * cover, light->haze_colour);
@@ -295,12 +331,8 @@ static void lay_over(const sprite *s, const cf_cards *all, const cf_cards_light 
 static void draw_in_tile(const sprite *s, const cf_cards *all, const cf_cards_light *light,
                          const cf_lens *lens, const int tile[4], patch *b, cf_film *film) {
   patch_begin(b, s, tile);
-  if (b->n == 0) return;
-  for (int k = 0; k < s->copies; ++k) {
-    float off[2];
-    copy_offset(s, k, off);
-    add_copy(s, &all->picture[all->card[s->card].picture], off, b);
-  }
+  if (b->seen.n == 0) return;
+  patch_draw(b, s, &all->picture[all->card[s->card].picture]);
   lay_over(s, all, light, lens, b, film);
 }
 

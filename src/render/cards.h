@@ -3,9 +3,9 @@
  * Flakes: many small flat pictures in space, in front of a film that has been exposed already.
  *
  * A flake is a parallelogram with a texture of cover, brightness and slope. What the lens and the shutter do to it is
- * found for each flake by itself: it is drawn as the mean of many copies that lie as the points of the lens and the moments of the shutter
- * would place them, with a texture so coarse that the copies join smoothly. So there is no noise in soft flakes, however
- * few samples, and the cost follows the pixels that are touched. Flakes are then laid over each other from the far to
+ * found for each flake by itself, at places the farther apart the softer it is: it is drawn as the mean of copies along
+ * its way while the shutter is open, and the lens makes a disc of each place (disc.h). So there is no noise in soft
+ * flakes, and the cost follows the pixels that are touched. Flakes are then laid over each other from the far to
  * the near, each as a whole: within the blur of two flakes that cross, which is in front is decided by their centres.
  *
  * Light: ice scatters a little of every light to all sides, and mirrors like a plate: where the half-way direction between

@@ -27,7 +27,7 @@ cf_style cf_style_find(const char *name) {
 cf_look cf_look_default(const cf_style style) {
   const double open = (double)NAN;
   cf_look l = {
-      .style = style, .width = 1280, .height = 720, .samples = 16, .threads = 1, .zoom = 1, .floor = true};
+      .style = style, .width = 1280, .height = 720, .samples = 16, .noise = 0.01, .threads = 1, .zoom = 1, .floor = true};
   double *const numbers[] = {&l.low,   &l.high,  &l.strength, &l.level,      &l.turn,       &l.rise,
                              &l.angle, &l.focus, &l.aperture, &l.light_turn, &l.light_rise, &l.light_spread};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) *numbers[i] = open;
@@ -145,6 +145,7 @@ void cf_look_stand(const cf_look *look, const cf_stand *usual, cf_studio *s) {
   const double aspect = (double)look->width / look->height;
   s->width = look->width, s->height = look->height;
   s->samples = look->samples, s->threads = look->threads;
+  s->noise = (float)(look->noise * exp2(-look->exposure / 2)); /* of sqrt(light) before it is exposed */
   s->camera = cf_camera_around(usual->low, usual->high, cf_or(look->turn, usual->turn),
                                cf_or(look->rise, usual->rise), cf_or(look->angle, usual->angle), aspect);
   for (int a = 0; a < 3; ++a) {

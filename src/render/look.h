@@ -43,6 +43,7 @@ typedef struct cf_look {
   cf_style style;
   int width, height, samples, threads;
   bool framed;           /* the picture has just that size; false: style field takes the shape of its plane */
+  double noise;          /* a place that has less takes no more samples; parts of white */
   double exposure;       /* stops */
   double low, high;      /* of the values */
   double strength;       /* ink, smoke: depth of a tenth of the box at the upper end of the range */

@@ -7,7 +7,7 @@
 #include "render/rays.h"
 #include "render/surface.h"
 
-enum { TILE = 32, SAMPLES_MOST = 65536, SIDE_MOST = 16384 };
+enum { TILE = 32, BLOCK = 8, SAMPLES_FIRST = 4, SAMPLES_MOST = 65536, SIDE_MOST = 16384 };
 
 /* --- what stands there ---------------------------------------------------------------------------------------- */
 
@@ -95,17 +95,18 @@ static cf_vec see(const cf_stage *stage, cf_ray ray, const cf_vec behind, cf_dic
 /* A number in [0, 1) as one in -1 .. 1 with the density of a tent: neighbouring pixels share what lies between. */
 static float tent(const float s) { return s < 0.5f ? sqrtf(2 * s) - 1 : 1 - sqrtf(2 - 2 * s); }
 
-static void expose_pixel(const cf_stage *stage, const cf_lens *lens, const int x, const int y, cf_film *f) {
+/* Samples first .. end - 1 of a pixel, added up. */
+static cf_vec expose_pixel(const cf_stage *stage, const cf_lens *lens, const int pixel[2], const int first,
+                           const int end, cf_film *f) {
   const cf_studio *s = stage->studio;
-  const size_t p = (size_t)y * (size_t)f->width + (size_t)x;
+  const size_t p = (size_t)pixel[1] * (size_t)f->width + (size_t)pixel[0];
   const float wide = (float)s->width, tall = (float)s->height;
   cf_vec sum = {0, 0, 0};
-  f->distance[p] = INFINITY;
-  for (int i = 0; i < s->samples; ++i) {
+  for (int i = first; i < end; ++i) {
     cf_dice dice = {.pixel = cf_random_mix(s->seed) ^ p, .sample = (uint32_t)i};
     float at[2], disc[2], distance;
     cf_dice_pair(&dice, at);
-    const float px = (float)x + 0.5f + tent(at[0]), py = (float)y + 0.5f + tent(at[1]);
+    const float px = (float)pixel[0] + 0.5f + tent(at[0]), py = (float)pixel[1] + 0.5f + tent(at[1]);
     cf_dice_pair(&dice, at);
     cf_sample_disc(at, disc);
     cf_ray ray = cf_lens_ray(lens, px, py, disc);
@@ -117,15 +118,48 @@ static void expose_pixel(const cf_stage *stage, const cf_lens *lens, const int x
     sum = cf_vec_along(sum, fminf(1, BRIGHTEST / fmaxf(most, BRIGHTEST)), seen);
     f->distance[p] = fminf(f->distance[p], distance * cf_vec_dot(ray.along, lens->forward));
   }
-  f->light[p] = cf_vec_scale(1 / (float)s->samples, sum);
+  return sum;
+}
+
+/* By how much the eye sees a and b differ, squared. */
+static float unlike(const cf_vec a, const cf_vec b) {
+  const cf_vec d = {sqrtf(a.x) - sqrtf(b.x), sqrtf(a.y) - sqrtf(b.y), sqrtf(a.z) - sqrtf(b.z)};
+  return cf_vec_dot(d, d) / 3;
+}
+
+/* Pixels x0 <= x < x1, y0 <= y < y1. */
+static void expose_block(const cf_stage *stage, const cf_lens *lens, const int at[4], cf_film *f) {
+  const cf_studio *s = stage->studio;
+  cf_vec sum[BLOCK * BLOCK] = {{0, 0, 0}};
+  int done = 0, pixels = (at[2] - at[0]) * (at[3] - at[1]);
+  float noise = INFINITY;
+  while (done < s->samples && !(noise < s->noise)) {
+    const int goal = done == 0 ? CF_MIN(SAMPLES_FIRST, s->samples) : CF_MIN(2 * done, s->samples);
+    float square = 0;
+    for (int y = at[1], n = 0; y < at[3]; ++y)
+      for (int x = at[0]; x < at[2]; ++x, ++n) {
+        const size_t p = (size_t)y * (size_t)f->width + (size_t)x;
+        if (done == 0) f->distance[p] = INFINITY;
+        sum[n] = cf_vec_add(sum[n], expose_pixel(stage, lens, (int[2]){x, y}, done, goal, f));
+        const cf_vec before = f->light[p];
+        f->light[p] = cf_vec_scale(1 / (float)goal, sum[n]);
+        square += done == 0 ? INFINITY : unlike(before, f->light[p]);
+      }
+    noise = sqrtf(square / (float)pixels);
+    done = goal;
+  }
 }
 
 /* Where nothing can be met: the backdrop alone. */
-static void expose_backdrop(const cf_studio *s, const int x, const int y, cf_film *f) {
-  const size_t p = (size_t)y * (size_t)f->width + (size_t)x;
+static void expose_backdrop(const cf_studio *s, const int at[4], cf_film *f) {
   const float wide = (float)s->width, tall = (float)s->height;
-  f->distance[p] = INFINITY;
-  f->light[p] = cf_backdrop_at(&s->backdrop, ((float)x + 0.5f) / wide, ((float)y + 0.5f) / tall, wide / tall);
+  for (int y = at[1]; y < at[3]; ++y)
+    for (int x = at[0]; x < at[2]; ++x) {
+      const size_t p = (size_t)y * (size_t)f->width + (size_t)x;
+      f->distance[p] = INFINITY;
+      f->light[p] =
+          cf_backdrop_at(&s->backdrop, ((float)x + 0.5f) / wide, ((float)y + 0.5f) / tall, wide / tall);
+    }
 }
 
 static void expose_all(const cf_stage *stage, const cf_lens *lens, cf_film *f) {
@@ -139,12 +173,14 @@ static void expose_all(const cf_stage *stage, const cf_lens *lens, cf_film *f) {
     const float pixels[4] = {(float)x0 - 1, (float)y0 - 1, (float)x1 + 1,
                              (float)y1 + 1}; /* tents reach out */
     const bool full = stage->studio->media > 0 || (some && cf_lens_reaches(lens, pixels, low, high));
-    for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x)
+    for (int y = y0; y < y1; y += BLOCK)
+      for (int x = x0; x < x1; x += BLOCK) {
+        const int block[4] = {x, y, CF_MIN(x + BLOCK, x1), CF_MIN(y + BLOCK, y1)};
         if (full)
-          expose_pixel(stage, lens, x, y, f);
+          expose_block(stage, lens, block, f);
         else
-          expose_backdrop(stage->studio, x, y, f);
+          expose_backdrop(stage->studio, block, f);
+      }
   }
 }
 

@@ -2,8 +2,10 @@
  *
  * The studio: what stands in front of the camera, how it is lit, and taking the picture.
  *
- * A plain struct that is filled in; arrays are the caller's and are only read. Every pixel takes `samples` rays through
- * lens and shutter. A ray crosses media (medium.h) and haze and meets surfaces (rays.h). A surface of albedo a sends
+ * A plain struct that is filled in; arrays are the caller's and are only read. A pixel takes rays through lens and
+ * shutter until the noise is small, `samples` at most: blocks of pixels take 4, 8, 16 ... each, and stop where the root
+ * mean square over the block of sqrt(mean of all) - sqrt(mean of the first half), which is about the error of a half in
+ * what the eye sees, is below `noise`. A ray crosses media (medium.h) and haze and meets surfaces (rays.h). A surface of albedo a sends
  *
  *     the lights      a E cos(angle) where nothing is in the way, and a highlight (GGX; Walter et al. 2007)
  *     the sky         a times what one ray, with the cosine's density, finds: sky, or the colour of what is near;
@@ -66,7 +68,9 @@ typedef struct cf_haze {
 #define CF_STUDIO_MEDIA  3 /* only one of them may scatter */
 
 typedef struct cf_studio {
-  int width, height, samples, threads;
+  int width, height, threads;
+  int samples; /* of a pixel, at most */
+  float noise; /* of sqrt(light); a block of pixels that has less takes no more samples; 0: all take all */
   uint64_t seed;
   cf_camera camera;
   int lights;

@@ -372,6 +372,46 @@ static void samples_are_spread_evenly(void **state) {
     }
 }
 
+/* Light on the floor below a ball, rough and with soft shadows: noise in some places, none in others. */
+static void take_noisy(const int samples, const float noise, cf_film *film) {
+  const float ball[1][4] = {{0, 0, 0, 0.5f}};
+  const float corners[4][3] = {{-3, -3, -0.6f}, {3, -3, -0.6f}, {3, 3, -0.6f}, {-3, 3, -0.6f}};
+  const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
+  const cf_material paper = {.tint = {0.5f, 0.5f, 0.5f}};
+  cf_studio s = plain(48, 4);
+  s.samples = samples, s.noise = noise;
+  s.camera.eye[2] = 1.5;
+  s.balls = 1, s.ball[0] = (cf_balls){.count = 1, .at = ball, .material = paper};
+  s.solids = 1;
+  s.solid[0] =
+      (cf_solid){.vertices = 4, .at = corners, .triangles = 2, .corner = triangles, .material = paper};
+  s.lights = 1, s.light[0] = (cf_light){cf_light_toward(40, 50), {1, 1, 1}, 0.5f};
+  s.sky = (cf_sky){{0.5f, 0.5f, 0.5f}, {0.1f, 0.1f, 0.1f}, {0, 0, 0}};
+  OK(cf_studio_expose(&s, film));
+}
+
+static double noise_of(const cf_film *film, const cf_film *exact) {
+  double square = 0;
+  const int pixels = film->width * film->height;
+  for (int p = 0; p < pixels; ++p)
+    square += pow(sqrt((double)film->light[p].x) - sqrt((double)exact->light[p].x), 2);
+  return sqrt(square / pixels);
+}
+
+static void sampling_ends_where_the_noise_is_small(void **state) {
+  cf_film exact, few, all, some, ended;
+  (void)state;
+  take_noisy(2048, 0, &exact);
+  take_noisy(8, 0, &few), take_noisy(512, 1, &ended); /* it takes two looks to see noise: 4 samples and 8 */
+  assert_memory_equal(few.light, ended.light, sizeof *few.light * 48 * 48);
+  take_noisy(512, 0, &all), take_noisy(512, 0.01f, &some);
+  const double worst = noise_of(&few, &exact), best = noise_of(&all, &exact), got = noise_of(&some, &exact);
+  assert_true(best < 0.5 * got && got < 0.5 * worst);
+  assert_true(got < 0.01);
+  cf_film *const films[] = {&exact, &few, &all, &some, &ended};
+  for (int i = 0; i < 5; ++i) cf_film_destroy(films[i]);
+}
+
 static void any_number_of_threads_takes_the_same_picture(void **state) {
   float at[40][4], moved[40][3];
   cf_film one, many;
@@ -385,6 +425,7 @@ static void any_number_of_threads_takes_the_same_picture(void **state) {
   cf_studio s = plain(70, 4);
   m.absorb = (cf_vec){0.5f, 0.6f, 0.7f};
   s.camera.aperture = 0.1;
+  s.samples = 32, s.noise = 0.02f;
   s.media = 1, s.medium[0] = &m;
   s.balls = 1;
   s.ball[0] = (cf_balls){.count = 40,
@@ -499,6 +540,7 @@ int main(void) {
       cmocka_unit_test(grey_is_developed_to_its_code),
       cmocka_unit_test(dither_keeps_the_mean),
       cmocka_unit_test(samples_are_spread_evenly),
+      cmocka_unit_test(sampling_ends_where_the_noise_is_small),
       cmocka_unit_test(any_number_of_threads_takes_the_same_picture),
       cmocka_unit_test(parts_of_a_picture_that_a_box_cannot_reach_are_known),
       cmocka_unit_test(what_cannot_be_taken_is_said),
