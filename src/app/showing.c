@@ -156,17 +156,18 @@ static void unload(cf_showing *s) {
   cf_points_clear(&s->points);
   cf_free(s->value);
   cf_free(s->velocity);
-  cf_flock_destroy(s->flock);
+  cf_flock_clear(s->flock);
   cf_canvas_destroy(&s->inset);
-  s->mesh = NULL, s->value = s->velocity = NULL, s->flock = NULL;
+  s->mesh = NULL, s->value = s->velocity = NULL;
   s->exhibit = (cf_exhibit){.title = NULL};
 }
 
 void cf_showing_close(cf_showing *s) {
   unload(s);
+  cf_flock_destroy(s->flock);
   cf_free(s->number);
   cf_scene_destroy(s->scene);
-  s->number = NULL, s->scene = NULL;
+  s->number = NULL, s->scene = NULL, s->flock = NULL;
 }
 
 /* --- what ---------------------------------------------------------------------------------------------------------------- */

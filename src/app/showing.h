@@ -56,6 +56,7 @@ cf_status cf_showing_draw(cf_showing *s, cf_canvas *c);
 
 /* Flakes, settled ones, ground and atlas of a snowfall (showing_flakes.c). */
 cf_status cf_flock_load(cf_showing *s, int64_t number);
+void cf_flock_clear(struct cf_flock *f); /* of the frame; NULL is fine, as below */
 void cf_flock_destroy(struct cf_flock *f);
 
 /* The curves of render.plot as a picture for the corner (showing_inset.c). */

@@ -14,25 +14,33 @@
 #include "model/atlas.h"
 
 typedef struct cf_flock {
-  cf_atlas *atlas;
+  cf_atlas *atlas; /* stays from frame to frame, with its pictures */
   cf_exhibit_kind *kind;
   cf_points air, settled, ground;
   float *turn[2], *radius[2], *number[2], *velocity;
   cf_exhibit_flakes flakes;
 } cf_flock;
 
-void cf_flock_destroy(cf_flock *f) {
+void cf_flock_clear(cf_flock *f) {
   if (f == NULL) return;
-  for (int k = 0; f->kind != NULL && k < f->flakes.kinds; ++k) cf_flake_picture_destroy(&f->kind[k].picture);
   for (int i = 0; i < 2; ++i) {
     cf_free(f->turn[i]);
     cf_free(f->radius[i]);
     cf_free(f->number[i]);
+    f->turn[i] = f->radius[i] = f->number[i] = NULL;
   }
   cf_free(f->velocity);
+  f->velocity = NULL;
   cf_points_clear(&f->air);
   cf_points_clear(&f->settled);
   cf_points_clear(&f->ground);
+  f->flakes = (cf_exhibit_flakes){.kinds = f->flakes.kinds, .kind = f->flakes.kind};
+}
+
+void cf_flock_destroy(cf_flock *f) {
+  if (f == NULL) return;
+  cf_flock_clear(f);
+  for (int k = 0; f->kind != NULL && k < f->flakes.kinds; ++k) cf_flake_picture_destroy(&f->kind[k].picture);
   cf_free(f->kind);
   cf_atlas_destroy(f->atlas);
   cf_free(f);
@@ -145,10 +153,12 @@ static cf_status read_flakes(cf_flock *f, const int which, const cf_points *p) {
 }
 
 cf_status cf_flock_load(cf_showing *s, const int64_t number) {
-  CF_TRY(CF_NEW(&s->flock, 1));
+  if (s->flock == NULL) {
+    CF_TRY(CF_NEW(&s->flock, 1));
+    CF_TRY(read_atlas(s, s->flock));
+  }
   cf_flock *f = s->flock;
   cf_exhibit_flakes *all = &f->flakes;
-  CF_TRY(read_atlas(s, f));
   CF_TRY(read_set(s, "particles", number, &f->air));
   CF_TRY(read_set(s, "particles_settled", number, &f->settled));
   CF_TRY(read_set(s, "particles_ground", number, &f->ground));
