@@ -137,10 +137,26 @@ static void a_file_of_another_scene_changes_nothing(void **state) {
   OK(cf_sim_save(a.sim, path));
   assert_int_equal(cf_sim_load(b.sim, path), CF_BAD_FILE);
   assert_non_null(strstr(cf_status_sentence(), "another scene"));
+  assert_non_null(strstr(cf_status_sentence(), "which says `  tau: 0.4` where this one says `  tau: "));
   assert_true(same_state(&b, &fresh));
   close_one(&a);
   close_one(&b);
   close_one(&fresh);
+}
+
+static void how_a_scene_is_called_and_shown_may_change(void **state) {
+  (void)state;
+  static const char *const set[] = {"title=Other", "render.samples=3", "output.preview.field=phi"};
+  const char *folder = folder_with_scene("store-shown");
+  const one a = open_at(folder, 0, NULL), b = open_at(folder, 3, set);
+  char path[1024];
+  snprintf(path, sizeof path, "%s/state.h5", folder);
+  OK(cf_sim_step(a.sim, NULL));
+  OK(cf_sim_save(a.sim, path));
+  OK(cf_sim_load(b.sim, path));
+  assert_true(same_state(&a, &b));
+  close_one(&a);
+  close_one(&b);
 }
 
 static void a_damaged_file_changes_nothing(void **state) {
@@ -249,6 +265,7 @@ int main(void) {
       cmocka_unit_test(so_it_does_where_the_step_is_automatic),
       cmocka_unit_test(checkpoints_of_a_run_can_be_loaded),
       cmocka_unit_test(a_file_of_another_scene_changes_nothing),
+      cmocka_unit_test(how_a_scene_is_called_and_shown_may_change),
       cmocka_unit_test(a_damaged_file_changes_nothing),
       cmocka_unit_test(threads_with_simulations_of_their_own_agree),
       cmocka_unit_test(saving_and_loading_survive_any_allocation_that_fails),
