@@ -268,7 +268,7 @@ class Checkpoints(Case):
 
     def test_of_another_scene(self):
         text = (self.folder / "kept/run.yaml").read_text()
-        (self.folder / "kept/run.yaml").write_text(text.replace("k: 0.02", "k: 0.03"))
+        (self.folder / "kept/run.yaml").write_text(text.replace("dt: 0.02", "dt: 0.01"))
         done = self.call("resume", "kept")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("belongs to another scene", done.stderr)
