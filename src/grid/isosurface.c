@@ -10,6 +10,9 @@
  * to each other.
  *
  * Vertices are kept off the lattice points by a thousandth of h: triangles would have no area there, and no normal.
+ *
+ * Normals are the field's gradient, between the central differences at the ends of the edge. In a groove of one cell those
+ * see the wall beyond it and may even point inwards; the difference along the edge itself cannot.
  */
 #include "grid/isosurface.h"
 
@@ -20,7 +23,8 @@
 #include "base/mem.h"
 #include "grid/isosurface_table.h"
 
-#define END 1e-3 /* as near to a lattice point as a vertex comes, in h */
+#define END   1e-3 /* as near to a lattice point as a vertex comes, in h */
+#define STEEP 0.75 /* a normal goes along its edge for at least this part of the edge's difference */
 
 typedef struct lattice {
   const cf_grid *g;
@@ -157,6 +161,8 @@ static void make_vertex(const lattice *l, cf_mesh *mesh, const int32_t v, const 
     const double place = l->low[d] + at[d] - l->pad + 0.5 + (d == axis ? t : 0);
     mesh->place[v][d] = (cf_real)(l->g->origin[d] + place * l->g->h);
     normal[d] = -((1 - t) * from_slope[d] + t * to_slope[d]);
+    if (d == axis)
+      normal[d] = a > b ? CF_MAX(normal[d], STEEP * (a - b)) : CF_MIN(normal[d], STEEP * (a - b));
     length += normal[d] * normal[d];
   }
   for (int d = 0; d < 3; ++d) mesh->normal[v][d] = (cf_real)(length > 0 ? normal[d] / sqrt(length) : 0);

@@ -19,13 +19,17 @@ static cf_vec colour_of(const cf_thing *t, const cf_hit *hit) {
   return (cf_vec){1, 1, 1};
 }
 
+/* The normals of the corners between them, drawn to that of the triangle where they say little about it. */
+static cf_vec smooth_normal(const cf_solid *b, const cf_hit *hit, const cf_vec flat) {
+  const cf_vec n = cf_vec_unit(weighed(b->normal, b->corner[hit->part], hit));
+  return cf_vec_unit(cf_vec_mix(flat, n, cf_smooth_step(0, 0.3f, cf_vec_dot(n, flat))));
+}
+
 void cf_surface_meet(const cf_stage *s, const cf_ray *ray, const cf_hit *hit, cf_point *p) {
   const cf_thing *t = &s->thing[hit->object];
   const cf_vec flat = cf_vec_unit(hit->normal);
-  cf_vec normal = flat;
-  if (t->solid != NULL && t->solid->normal != NULL)
-    normal = cf_vec_unit(weighed(t->solid->normal, t->solid->corner[hit->part], hit));
-  if (cf_vec_dot(normal, flat) < 0) normal = cf_vec_scale(-1, normal);
+  const bool smooth = t->solid != NULL && t->solid->normal != NULL;
+  const cf_vec normal = smooth ? smooth_normal(t->solid, hit, flat) : flat;
   const bool leaving = cf_vec_dot(ray->along, flat) > 0;
   *p = (cf_point){.at = cf_vec_along(ray->from, hit->distance, ray->along),
                   .flat = cf_vec_scale(leaving ? -1 : 1, flat),

@@ -13,6 +13,7 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "grid/isosurface.h"
+#include "grid/sweep.h"
 #include "testing.h"
 
 #define PI 3.14159265358979323846
@@ -194,6 +195,52 @@ static void sampled_values_are_the_level(void **state) {
   drop(&s);
 }
 
+/* The cosine between a corner's normal and its triangle's. */
+static double cosine_at(const cf_mesh *m, const int64_t t, const int c) {
+  double p[3][3], n[3], dot = 0, size = 0;
+  for (int q = 0; q < 3; ++q)
+    for (int a = 0; a < 3; ++a)
+      p[q][a] = (double)m->place[m->corner[t][q]][a] - (double)m->place[m->corner[t][0]][a];
+  for (int a = 0; a < 3; ++a) {
+    n[a] = p[1][(a + 1) % 3] * p[2][(a + 2) % 3] - p[1][(a + 2) % 3] * p[2][(a + 1) % 3];
+    dot += n[a] * (double)m->normal[m->corner[t][c]][a];
+    size += n[a] * n[a];
+  }
+  return dot / sqrt(size);
+}
+
+/* Blobs and grooves of two or three cells. With central differences alone 3.8 % of the corners look away. */
+static void normals_of_a_rough_surface_look_outwards(void **state) {
+  (void)state;
+  sample s = make(32, 1), other = make(32, 1);
+  int64_t away = 0;
+  fill_noise(&s, 5);
+  for (int pass = 0; pass < 4; ++pass) {
+    for (int k = 1; k < 31; ++k)
+      for (int j = 1; j < 31; ++j)
+        for (int i = 1; i < 31; ++i) {
+          const ptrdiff_t p = cf_box_at(&s.grid.box, i, j, k);
+          other.f.at[p] = s.f.at[p] / 2;
+          for (int a = 0; a < 3; ++a)
+            other.f.at[p] += (s.f.at[p + s.grid.box.stride[a]] + s.f.at[p - s.grid.box.stride[a]]) / 12;
+        }
+    const cf_cell kept = s.f;
+    s.f = other.f;
+    other.f = kept;
+  }
+  CF_PARALLEL_ROWS (&s.grid.box, 1, r)
+    for (int i = 0; i < 32; ++i)
+      s.f.at[cf_box_row(&s.grid.box, r) + i] =
+          (cf_real)tanh(25 * (double)s.f.at[cf_box_row(&s.grid.box, r) + i]);
+  OK(cf_isosurface_make(s.mesh, &s.grid, s.f, &(cf_isosurface){.below = true, .caps = false}));
+  for (int64_t t = 0; t < s.mesh->triangles; ++t)
+    for (int c = 0; c < 3; ++c) away += cosine_at(s.mesh, t, c) < 0;
+  printf("%.4f of the corners look away\n", (double)away / (double)(3 * s.mesh->triangles));
+  BELOW((double)away / (double)(3 * s.mesh->triangles), 0.025);
+  drop(&s);
+  drop(&other);
+}
+
 static void the_distance_of_a_ball_is_known(void **state) {
   (void)state;
   sample s = make(32, 1.0 / 32);
@@ -301,6 +348,7 @@ int main(void) {
       cmocka_unit_test(caps_lie_on_the_walls),
       cmocka_unit_test(any_number_of_threads_makes_the_same_mesh),
       cmocka_unit_test(sampled_values_are_the_level),
+      cmocka_unit_test(normals_of_a_rough_surface_look_outwards),
       cmocka_unit_test(the_distance_of_a_ball_is_known),
       cmocka_unit_test(a_cube_on_the_lattice_has_an_inside),
       cmocka_unit_test(mistakes_are_said),
