@@ -185,7 +185,8 @@ static cf_status lay_out(lattice *l, const int margin) {
     const double cells = ceil((f.high[a] - f.low[a]) / l->h) + 1;
     if (!isfinite(cells)) return cf_fail(CF_BAD_ARGUMENT, "the mesh has corners that are no places");
     if (cells > 1 << 20)
-      return cf_fail(CF_OVER_LIMIT, "the mesh is %.6g m long and its distance is wanted every %.6g m",
+      return cf_fail(CF_OVER_LIMIT,
+                     "the mesh is %.6g m long, too long for its distance every %.6g m: is its size in m?",
                      f.high[a] - f.low[a], l->h);
     l->n[a] = (int)cells + 1 + 2 * margin;
     l->place[a] = (f.low[a] + f.high[a]) / 2 - l->h * (l->n[a] - 1) / 2;

@@ -109,14 +109,17 @@ cf_status cf_mesh_check_closed(const cf_mesh *m) {
   CF_TRY(cf_mesh_look(m, &f));
   if (m->triangles == 0) return cf_fail(CF_BAD_ARGUMENT, "the mesh has no triangles");
   if (f.open_edges > 0)
-    return cf_fail(CF_BAD_ARGUMENT, "the mesh is not closed: %" PRId64 " open edges", f.open_edges);
+    return cf_fail(CF_BAD_ARGUMENT, "the mesh is not closed: %" PRId64 " open edges: fill its holes",
+                   f.open_edges);
   if (f.crowded_edges > 0)
     return cf_fail(CF_BAD_ARGUMENT,
-                   "the mesh is not a surface: %" PRId64 " edges have more than two triangles",
+                   "the mesh is not a surface: %" PRId64
+                   " edges have more than two triangles: take apart what only touches",
                    f.crowded_edges);
   if (f.turned_edges > 0)
     return cf_fail(CF_BAD_ARGUMENT,
-                   "the mesh has no inside: at %" PRId64 " edges its triangles disagree about it",
+                   "the mesh has no inside: at %" PRId64
+                   " edges its triangles disagree about it: turn them all outwards",
                    f.turned_edges);
   return CF_OK;
 }

@@ -161,7 +161,8 @@ cf_status cf_draw_crystal(const cf_look *look, const cf_exhibit *e, cf_canvas *c
   l.cold = cf_vec_scale((float)look->light_strength, l.cold);
   const double fit = CF_MIN(1.0, (double)look->width / look->height * e->grid->box.n[1] / e->grid->box.n[0]);
   p.height = CF_MAX((int)lrint(FINER * look->height * look->zoom * fit), 2);
-  if (p.height > 16 * look->height) return cf_fail(CF_BAD_ARGUMENT, "zoom %g: at most 8", look->zoom);
+  if (p.height > 16 * look->height)
+    return cf_fail(CF_BAD_ARGUMENT, "render.camera.zoom = %g: at most 8 for a crystal", look->zoom);
   cf_status s = resampled(e, &e->field[0], &p, &p.ice);
   if (s == CF_OK) s = raise_up(e, &p);
   if (s == CF_OK) s = smooth(&p, e->grid->box.n[1]);

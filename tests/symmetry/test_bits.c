@@ -3,7 +3,8 @@
  * For every model that the program has, on a small scene of its own in tests/bits: the files of a run are the same
  * bytes for 1, 2 and 3 threads, when it is run again, and when it is stopped at any of several steps and resumed with
  * another number of threads. And NaN put into any part of its state ends the run with a sentence that names it (or is
- * overwritten without a trace), and the run can be gone on with to the same bytes.
+ * overwritten without a trace), and the run can be gone on with to the same bytes. Further scenes, of what else models
+ * can hold, are held to the same bytes.
  */
 #include <math.h>
 #include <string.h>
@@ -100,7 +101,7 @@ static void same(const char *whole, const char *folder, const char *why) {
 
 static void scene_of(const char *model, char path[1024]) {
   snprintf(path, 1024, CF_SOURCE_DIR "/tests/bits/%s.yaml", model);
-  if (access(path, R_OK) != 0) fail_msg("model %s has no scene %s", model, path);
+  if (access(path, R_OK) != 0) fail_msg("%s has no scene %s", model, path);
 }
 
 /* --- tests ------------------------------------------------------------------------------------------------ */
@@ -177,9 +178,17 @@ static void a_model_notices_what_is_not_finite(const char *model) {
   }
 CF_MODEL_WORDS(BITS)
 
+#define FURTHER(F) F(tracer_around) F(tracer_sparse) F(snowfall_around)
+#define FURTHER_BITS(scene)                                \
+  static void scene##_gives_the_same_bytes(void **state) { \
+    (void)state, a_model_gives_the_same_bytes(#scene);     \
+  }
+FURTHER(FURTHER_BITS)
+
 int main(void) {
 #define TESTS(upper, lower) \
   cmocka_unit_test(lower##_gives_the_same_bytes), cmocka_unit_test(lower##_notices_what_is_not_finite),
-  const struct CMUnitTest tests[] = {CF_MODEL_WORDS(TESTS)};
+#define FURTHER_TESTS(scene) cmocka_unit_test(scene##_gives_the_same_bytes),
+  const struct CMUnitTest tests[] = {CF_MODEL_WORDS(TESTS) FURTHER(FURTHER_TESTS)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

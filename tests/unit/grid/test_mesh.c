@@ -276,7 +276,7 @@ static void a_cube_on_the_lattice_has_an_inside(void **state) {
     if (missing == 0) is_closed(m);
     if (missing == 1) {
       assert_int_equal(cf_mesh_check_closed(m), CF_BAD_ARGUMENT);
-      assert_string_equal(cf_status_sentence(), "the mesh is not closed: 3 open edges");
+      assert_string_equal(cf_status_sentence(), "the mesh is not closed: 3 open edges: fill its holes");
     }
     for (int k = 0; k < d.n[2]; ++k)
       for (int j = 0; j < d.n[1]; ++j)
