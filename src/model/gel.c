@@ -6,7 +6,8 @@
  *     nodes                  gravity, obstacles; beta > 0: the semi-implicit solve                     (33), (35)
  *     nodes                  one C-F step of the saturation on the cells of the bodies                 (34)
  *     nodes -> particles     velocity and its gradient, F, place; changes of m_f and A                 (36)
- *     particles              now and then the filter of what nodes cannot see
+ *     particles              what is stretched over more than a cell becomes two; now and then the filter of what
+ *                            nodes cannot see
  *
  * with the corrections that physics/mpm.h and physics/poro.h tell. Water's velocity against the body and its inertia are
  * not modelled, nor is contact without the grid.
@@ -115,6 +116,7 @@ static cf_status gel_step(void *model, const double t, const double dt, cf_step_
   CF_TRY(move_water(g, t, dt, &gained, report));
   clock = cf_stage_end(report, CF_STAGE_DIFFUSE, clock);
   cf_mpm_gather(g->mpm, dt);
+  if (g->keys->split > 0) cf_mpm_split(g->mpm, g->keys->split);
   cf_ledger_add(&g->water, gained - g->mpm->returned);
   CF_TRY(keep_inside(g));
   clock = cf_stage_end(report, CF_STAGE_TRANSFER, clock);

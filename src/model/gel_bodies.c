@@ -119,6 +119,7 @@ static void make_particle(cf_gel *g, const body *b, const int number, const int6
     const double turning = w * (axis[c] * (x[d] - b->center[d]) - axis[d] * (x[c] - b->center[c]));
     volume *= b->step[a];
     g->set->attribute[g->at.position].at[a][p] = (cf_real)x[a];
+    g->set->attribute[g->at.side].at[a][p] = (cf_real)b->step[a];
     g->set->attribute[g->at.velocity].at[a][p] =
         (cf_real)((a < k->velocity.count ? k->velocity.value[a] : 0) + turning);
     g->set->attribute[g->at.deformation].at[a * b->dim + a][p] = 1;

@@ -78,25 +78,29 @@ enum { CF_GEL_TRANSFER_APIC, CF_GEL_TRANSFER_FLIP };
   P(to, number, CF_NONE, "s", "(-inf, inf)", "When it ends; left out: never")                              \
   P(amount, number, CF_NONE, "kg", "(0, inf)", "A drop: gone when it has given that much; left out: never")
 
-#define CF_GEL_TABLE(P, R)                                                                                  \
-  R(list, bodies, cf_scene_gel_body, "The bodies, each with its material")                                  \
-  R(list, water, cf_scene_gel_water, "Where water is; the first in the list that covers a cell has it")     \
-  P(walls, word, "separate", "", CF_WORDS(CF_GEL_WALL_WORDS),                                               \
-    "How bodies meet the walls of the domain; none: there are no walls and the domain only says how large " \
-    "a "                                                                                                    \
-    "cell is")                                                                                              \
-  P(gravity, numbers, CF_NONE, "m/s^2", "2..3 of (-inf, inf)", "Acceleration; left out: none")              \
-  P(particles, integer, "2", "", "[1, 64]", "Particles a cell along each axis")                             \
-  P(jitter, number, "0", "", "[0, 1]",                                                                      \
-    "Random displacement of particles at time 0, in halves of their spacing")                               \
-  P(transfer, word, "apic", "", CF_WORDS(CF_GEL_TRANSFER_WORDS),                                            \
-    "How velocities come back from the grid: apic (keeps angular momentum) or flip (eq. 36)")               \
-  P(flip, number, "0.95", "", "[0, 1]", "With transfer: flip, its share; the rest is PIC")                  \
-  P(implicitness, number, "0", "", "[0, 1]",                                                                \
-    "beta of eq. 35: 0 explicit, 1 implicit, whose steps are not bound by the speed of sound")              \
-  P(damping, number, "0", "1/s", "[0, inf)", "Velocities decay at this rate: what water around would do")   \
-  P(surface, number, "0.5", "", "(0, 1)",                                                                   \
-    "The surface that is drawn is where the grid is filled to this share")                                  \
+#define CF_GEL_TABLE(P, R)                                                                                   \
+  R(list, bodies, cf_scene_gel_body, "The bodies, each with its material")                                   \
+  R(list, water, cf_scene_gel_water, "Where water is; the first in the list that covers a cell has it")      \
+  P(walls, word, "separate", "", CF_WORDS(CF_GEL_WALL_WORDS),                                                \
+    "How bodies meet the walls of the domain; none: there are no walls and the domain only says how large "  \
+    "a "                                                                                                     \
+    "cell is")                                                                                               \
+  P(gravity, numbers, CF_NONE, "m/s^2", "2..3 of (-inf, inf)", "Acceleration; left out: none")               \
+  P(particles, integer, "2", "", "[1, 64]", "Particles a cell along each axis")                              \
+  P(jitter, number, "0", "", "[0, 1]",                                                                       \
+    "Random displacement of particles at time 0, in halves of their spacing")                                \
+  P(split, number, "1", "", "[0, inf)",                                                                      \
+    "A particle whose piece of the body has been stretched over more cells than this becomes two, lest the " \
+    "body come apart where grid and particles do not meet any more; there is room for four times the "       \
+    "particles of time 0. 0: never")                                                                         \
+  P(transfer, word, "apic", "", CF_WORDS(CF_GEL_TRANSFER_WORDS),                                             \
+    "How velocities come back from the grid: apic (keeps angular momentum) or flip (eq. 36)")                \
+  P(flip, number, "0.95", "", "[0, 1]", "With transfer: flip, its share; the rest is PIC")                   \
+  P(implicitness, number, "0", "", "[0, 1]",                                                                 \
+    "beta of eq. 35: 0 explicit, 1 implicit, whose steps are not bound by the speed of sound")               \
+  P(damping, number, "0", "1/s", "[0, inf)", "Velocities decay at this rate: what water around would do")    \
+  P(surface, number, "0.5", "", "(0, 1)",                                                                    \
+    "The surface that is drawn is where the grid is filled to this share")                                   \
   P(seed, integer, "1", "", "[0, 1073741824]", "Of the jitter")
 
 typedef struct cf_scene_gel_body {

@@ -119,7 +119,7 @@ cf_status cf_gel_resolve(cf_scene *scene) {
 
 double cf_gel_memory(const cf_scene *scene) {
   const int dim = scene->dim;
-  const double numbers = 3 * dim + 3 * dim * dim + 11, count = cf_gel_count(scene);
+  const double numbers = 4 * dim + 3 * dim * dim + 11, count = cf_gel_count(scene);
   /* a cell for `particles` to the power dim of them, and as many again around the surface */
   const double cells = 3 * count / pow((double)scene->gel.particles, dim);
   return count * (numbers * sizeof(cf_real) + 24) + cells * (8 + 24) * sizeof(cf_real) + 32e6;

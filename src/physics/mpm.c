@@ -20,6 +20,7 @@ cf_status cf_mpm_attributes_add(cf_particles *set, cf_mpm_attributes *at) {
   CF_TRY(cf_particles_attribute(set, "velocity_gradient", "1/s", dim * dim, CF_CARRIED, &at->affine));
   CF_TRY(cf_particles_attribute(set, "F", "", dim * dim, CF_CARRIED, &at->deformation));
   CF_TRY(cf_particles_attribute(set, "volume", dim == 3 ? "m^3" : "m^2", 1, CF_CARRIED, &at->volume));
+  CF_TRY(cf_particles_attribute(set, "side", "m", dim, CF_CARRIED, &at->side));
   CF_TRY(cf_particles_attribute(set, "body", "", 1, CF_CARRIED, &at->material));
   CF_TRY(cf_particles_attribute(set, "J_P", "", 1, CF_CARRIED, &at->plastic));
   CF_TRY(cf_particles_attribute(set, "water", "kg", 1, CF_CARRIED, &at->water));

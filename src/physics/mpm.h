@@ -21,7 +21,8 @@
  *
  *     cf_mpm_scatter(m, dt);  cf_mpm_move_nodes(m, t, dt, &report);  [water on m->nodes]  cf_mpm_gather(m, dt);
  *
- * Does not do: contact between bodies other than through the shared grid (which sticks them together), fracture.
+ * Does not do: contact between bodies other than through the shared grid (which sticks them together), fracture:
+ * cf_mpm_split keeps stretched bodies from coming apart where only the grid cannot see that they are whole.
  */
 #ifndef CF_PHYSICS_MPM_H
 #define CF_PHYSICS_MPM_H
@@ -70,7 +71,7 @@ typedef struct cf_mpm_params {
 
 /* The numbers of the particles' attributes. */
 typedef struct cf_mpm_attributes {
-  int position, velocity, affine, deformation, volume, material, plastic, water, memory;
+  int position, velocity, affine, deformation, volume, side, material, plastic, water, memory;
 } cf_mpm_attributes;
 
 typedef struct cf_mpm {
@@ -88,7 +89,8 @@ typedef struct cf_mpm {
   double returned; /* water that the latest gather gave back to held cells (see physics/poro.h) */
 } cf_mpm;
 
-/* Adds the attributes to an empty set. `material`: index of the material; `plastic`: J_P. */
+/* Adds the attributes to an empty set. `material`: index of the material; `plastic`: J_P; `side`: of the piece of the
+ * undeformed body that a particle stands for, along the axes; 0: it is never split. */
 cf_status cf_mpm_attributes_add(cf_particles *set, cf_mpm_attributes *at);
 
 /* For the particles that `set` has now, or later up to its room; params' tables must outlive it, as lattice and set.
@@ -101,6 +103,9 @@ void cf_mpm_scatter(cf_mpm *m, double dt);
 /* Momenta to velocities, (33) and (35). CF_NOT_FINITE. */
 cf_status cf_mpm_move_nodes(cf_mpm *m, double t, double dt, cf_solve_report *report);
 void cf_mpm_gather(cf_mpm *m, double dt);
+
+/* Cuts in two what is longer than `most` cells, as long as the set has room: mpm_split.c. Returns how many times. */
+int64_t cf_mpm_split(cf_mpm *m, double most);
 
 /* The largest speed (over axes), m/s, and the largest h/(dt of the explicit limit): a step must have
  * dt <= 0.5 h/waves, and should have dt <= h/speed times a Courant number. */

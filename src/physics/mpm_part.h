@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * What the files of the material point method share: mpm.c makes the object and steps particles, mpm_nodes.c moves
- * nodes, mpm_implicit.c solves (35), mpm_water.c filters and sums.
+ * nodes, mpm_implicit.c solves (35), mpm_water.c mixes and filters, mpm_sums.c sums, mpm_split.c cuts what is long.
  */
 #ifndef CF_PHYSICS_MPM_PART_H
 #define CF_PHYSICS_MPM_PART_H

@@ -148,6 +148,20 @@ static cf_status add_piece(cf_coupled *l, const block *b, const int label[8], co
   return CF_OK;
 }
 
+/* Marks in the rest of coarse cells, which nobody needs now, those whose block has several pieces: nearly none, and to
+ * look costs more than all else here. */
+static void find_pieces(const cf_coupled *l, const cf_coupled *coarse) {
+  CF_PARALLEL_COUPLED (coarse, v)
+    CF_TILE_ROWS (coarse, v, J, K)
+      CF_TILE_RUNS (coarse, v, run)
+        for (int I = run->low; I < run->high; ++I) {
+          const block b = block_of(l, coarse, (int[]){I, J, K});
+          int label[8], pieces = 1;
+          if (!is_whole(l, &b)) label_pieces(l, &b, label, &pieces);
+          coarse->rest[b.parent] = pieces < 2 ? 0 : 1;
+        }
+}
+
 static cf_status find_odds(cf_coupled *l, const cf_coupled *coarse) {
   l->odds = 0;
   CF_PARALLEL_COUPLED (l, v)
@@ -156,16 +170,16 @@ static cf_status find_odds(cf_coupled *l, const cf_coupled *coarse) {
         memset(l->rest + cf_box_at(&l->box, run->low, j, k), 0,
                (size_t)(run->high - run->low) * sizeof(float));
   if (l->bands[0] + l->bands[1] == 0) return CF_OK; /* nothing is closed */
+  find_pieces(l, coarse);
   int32_t islands = 0;
   for (ptrdiff_t v = 0; v < coarse->rows; ++v)
     CF_TILE_ROWS (coarse, v, J, K)
       CF_TILE_RUNS (coarse, v, run)
         for (int I = run->low; I < run->high; ++I) {
+          if (!(coarse->rest[cf_box_at(&coarse->box, I, J, K)] > 0)) continue;
           const block b = block_of(l, coarse, (int[]){I, J, K});
-          if (is_whole(l, &b)) continue;
           int label[8], pieces;
           const int main_piece = label_pieces(l, &b, label, &pieces);
-          if (pieces < 2) continue;
           for (int piece = 0; piece < b.count; ++piece)
             if (label[piece] == piece && piece != main_piece)
               CF_TRY(add_piece(l, &b, label, piece, is_island(l, &b, label, piece) ? ++islands : 0));

@@ -297,6 +297,89 @@ static void threads_do_not_change_a_bit(void **state) {
   for (int t = 0; t < 2; ++t) gel_end(&g[t]);
 }
 
+/* A block that turns and is drawn out: particles that stand for more than 1.1 cells are cut until none does. */
+static void splitting_keeps_all_sums_and_leaves_nothing_long(void **state) {
+  (void)state;
+  for (int dim = 2; dim <= 3; ++dim) {
+    gel_case g = {
+        .material = {{.mu = 16, .lambda = 24, .density = 3, .water = 0.7, .swelling = 10, GEL_ELASTIC}}};
+    blob(&g, dim, 2, 0.3, &(cf_mpm_params){.flip = -1});
+    cf_mpm_destroy(g.mpm);
+    OK(cf_particles_reserve(g.set, 40 * g.set->count));
+    gel_start(&g, &(cf_mpm_params){.flip = -1});
+    set_moving(&g);
+    const int64_t count = g.set->count;
+    for (int64_t i = 0; i < count; ++i) {
+      for (int a = 0; a < dim; ++a) gel_at(&g, g.at.side, a)[i] = (cf_real)(g.grid.h / 2);
+      gel_at(&g, g.at.deformation, 0)[i] = (cf_real)(1 + 8 * ((double)gel_at(&g, 0, 0)[i] - 0.31) / 0.25);
+      gel_at(&g, g.at.deformation, 1)[i] = 1.5f;
+      gel_at(&g, g.at.memory, 0)[i] = (cf_real)(1e-3 * sin((double)i));
+    }
+    const cf_mpm_sums first = cf_mpm_sums_of(g.mpm);
+    int times = 0;
+    while (cf_mpm_split(g.mpm, 1.1) > 0) ++times;
+    const cf_mpm_sums last = cf_mpm_sums_of(g.mpm);
+    assert_in_range(times, 2, 3);
+    assert_true(g.set->count > 2 * count && g.set->count < g.set->room);
+    const double size = sqrt(2 * first.kinetic * first.mass);
+    for (int a = 0; a < 3; ++a) {
+      CLOSE(last.momentum[a], first.momentum[a], round_off * size);
+      CLOSE(last.angular[a], first.angular[a], round_off * size);
+      CLOSE(last.center[a], first.center[a], round_off);
+    }
+    CLOSE(last.mass, first.mass, round_off * first.mass);
+    CLOSE(last.water, first.water, round_off * first.water);
+    CLOSE(last.memory, first.memory, round_off * 1e-3 * sqrt((double)count));
+    CLOSE(last.saturation_max, first.saturation_max, round_off);
+    for (int64_t i = 0; i < g.set->count; ++i)
+      for (int a = 0; a < dim; ++a) {
+        double square = 0;
+        for (int r = 0; r < dim; ++r) square += pow((double)gel_at(&g, g.at.deformation, r * dim + a)[i], 2);
+        BELOW(sqrt(square) * (double)gel_at(&g, g.at.side, a)[i], 1.1 * g.grid.h * (1 + 1e-6));
+      }
+    gel_end(&g);
+  }
+}
+
+/* A bar drawn out by its own motion to three times its length leaves no cell between its ends empty, as it does without
+ * splitting. */
+static void what_is_drawn_out_stays_whole(void **state) {
+  (void)state;
+  int empty[2];
+  for (int split = 0; split < 2; ++split) {
+    gel_case g = {.material = {{.mu = 0.25, .density = 1, GEL_ELASTIC}}};
+    const double h = 1.0 / 64, middle = 0.5;
+    OK(cf_grid_init(&g.grid, 2, (int[]){64, 64, 1}, h, NULL));
+    gel_fill(&g, (double[]){middle - 6 * h, 0.4, 0}, (double[]){middle + 6 * h, 0.4 + 6 * h, 0}, 2, 0);
+    OK(cf_particles_reserve(g.set, 8 * g.set->count));
+    gel_start(&g, &(cf_mpm_params){.flip = -1});
+    for (int64_t i = 0; i < g.set->count; ++i) {
+      gel_at(&g, g.at.side, 0)[i] = gel_at(&g, g.at.side, 1)[i] = (cf_real)(h / 2);
+      gel_at(&g, g.at.velocity, 0)[i] = (cf_real)(26 * ((double)gel_at(&g, 0, 0)[i] - middle));
+      gel_at(&g, g.at.affine, 0)[i] = 26;
+    }
+    double longest = 0;
+    empty[split] = 0;
+    for (int s = 0; s < 400; ++s) {
+      gel_step(&g, 0, 5e-4);
+      if (split) cf_mpm_split(g.mpm, 1);
+      bool filled[64] = {false};
+      int low = 63, high = 0;
+      for (int64_t i = 0; i < g.set->count; ++i) {
+        const int cell = (int)((double)gel_at(&g, 0, 0)[i] / h);
+        filled[cell] = true, low = CF_MIN(low, cell), high = CF_MAX(high, cell);
+      }
+      for (int i = low; i <= high; ++i) empty[split] += !filled[i];
+      longest = CF_MAX(longest, (high - low + 1) / 12.0);
+    }
+    printf("%s: %.2f times as long, %d cells empty, %d particles\n", split ? "split" : "whole", longest,
+           empty[split], (int)g.set->count);
+    gel_end(&g);
+  }
+  assert_true(empty[0] > 0);
+  assert_int_equal(empty[1], 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(apic_keeps_momentum_and_angular_momentum),
@@ -308,6 +391,8 @@ int main(void) {
       cmocka_unit_test(dropped_block_comes_to_rest),
       cmocka_unit_test(semi_implicit_step_agrees_and_is_stable),
       cmocka_unit_test(plastic_stretches_stay_within_their_limits),
+      cmocka_unit_test(splitting_keeps_all_sums_and_leaves_nothing_long),
+      cmocka_unit_test(what_is_drawn_out_stays_whole),
       cmocka_unit_test(threads_do_not_change_a_bit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
