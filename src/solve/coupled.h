@@ -84,8 +84,12 @@ void cf_coupled_restrict(const cf_coupled *l, const cf_coupled *coarse);
 /* e += interpolated coarse->e. */
 void cf_coupled_prolong(const cf_coupled *coarse, const cf_coupled *l);
 
-/* Copies the outermost layers of f to the ghosts across periodic seams. */
+/* Copies the outermost layers of f to the ghosts across periodic seams; of one axis. */
 void cf_coupled_wrap(const cf_coupled *l, float *f);
+void cf_coupled_wrap_axis(const cf_coupled *l, int a, float *f);
+
+/* rest = r - A e. */
+void cf_coupled_form_rest(const cf_coupled *l);
 
 /* Whether cell p has an equation. */
 static inline bool cf_coupled_has(const cf_coupled *l, const ptrdiff_t p) { return l->inverse[p] > 0; }

@@ -157,7 +157,7 @@ static cf_status solve_plain(cf_helmholtz *A, const cf_cell b, const cf_solve_op
 
 const char *cf_helmholtz_method(const cf_helmholtz *A) {
   if (A->is_varied && A->in_box) return cf_box_solver_method(A->around);
-  if (A->is_varied) return cf_varied_depth(A->varied) == 1 ? "pcg" : "multigrid-pcg";
+  if (A->is_varied) return cf_varied_method(A->varied);
   if (cf_level_is_line(&A->level[0])) return "line";
   if (A->depth == 1 && cf_level_is_few(&A->level[0])) return "direct";
   return A->in_box ? cf_box_solver_method(A->box) : "multigrid-pcg";

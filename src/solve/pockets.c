@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "grid/sweep.h"
 
 void cf_pockets_clear(cf_pockets *q, const cf_coupled *l) {
   cf_free(q->united);
@@ -127,19 +128,62 @@ cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, const bool fixed) 
     CF_TILE_ROWS (l, v, j, k)
       CF_TILE_RUNS (l, v, run) unite_run(q, l, run, (int[]){0, j, k});
   CF_TRY(number_pockets(q, l));
+  ptrdiff_t fixed_cells = 0;
   for (ptrdiff_t v = 0; v < l->rows; ++v)
     CF_TILE_ROWS (l, v, j, k)
       CF_TILE_RUNS (l, v, run)
         for (int i = run->low; i < run->high; ++i) {
           const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
-          if (q->united[q->label[p]] >= 0) q->cells[q->united[q->label[p]]] += 1;
+          if (q->united[q->label[p]] >= 0)
+            q->cells[q->united[q->label[p]]] += 1;
+          else
+            fixed_cells += cf_coupled_has(l, p);
         }
+  q->single = q->count == 1 && fixed_cells == 0;
   return CF_OK;
 }
 
 /* --- means -------------------------------------------------------------------------------------------- */
 
+CF_CLONES static void add_run(const int n, const float *inverse, const cf_real *f,
+                              double lane[CF_SUM_LANES]) {
+  double sum[CF_SUM_LANES], value[CF_SUM_LANES];
+  memcpy(sum, lane, sizeof sum);
+  for (int i = 0; i < n; i += CF_SUM_LANES) {
+    const int lanes = CF_MIN(CF_SUM_LANES, n - i);
+    for (int m = 0; m < CF_SUM_LANES; ++m) value[m] = 0;
+    CF_ROW_LOOP
+    for (int m = 0; m < lanes; ++m) value[m] = inverse[i + m] > 0 ? (double)f[i + m] : 0;
+    for (int m = 0; m < CF_SUM_LANES; ++m) sum[m] += value[m];
+  }
+  memcpy(lane, sum, sizeof sum);
+}
+
+CF_CLONES static void shift_run(const int n, const float *inverse, const double by, cf_real *f) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) f[i] = inverse[i] > 0 ? (cf_real)((double)f[i] - by) : f[i];
+}
+
+/* All cells that have an equation, row after row. */
+static double sum_of_all(const cf_coupled *l, const cf_cell f) {
+  double sum = 0;
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k) {
+      double lane[CF_SUM_LANES] = {0};
+      CF_TILE_RUNS (l, v, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        add_run(run->high - run->low, l->inverse + p, f.at + p, lane);
+      }
+      sum += cf_sum_lanes(lane);
+    }
+  return sum;
+}
+
 static void sum_up(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
+  if (q->single) {
+    q->sum[0] = sum_of_all(l, f);
+    return;
+  }
   for (int v = 0; v < q->count; ++v) q->sum[v] = 0;
   for (ptrdiff_t v = 0; v < l->rows; ++v)
     CF_TILE_ROWS (l, v, j, k)
@@ -153,15 +197,21 @@ static void sum_up(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
 
 /* f -= (sum - kept)/cells on every pocket. */
 static void shift(const cf_pockets *q, const cf_coupled *l, const bool kept, const cf_cell f) {
+  const double by = q->sum[0] / q->cells[0] - (kept ? q->mean[0] : 0); /* where there is one */
   CF_PARALLEL_COUPLED (l, v)
     CF_TILE_ROWS (l, v, j, k)
-      CF_TILE_RUNS (l, v, run)
-        for (int i = run->low; i < run->high; ++i) {
-          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+      CF_TILE_RUNS (l, v, run) {
+        const ptrdiff_t row = cf_box_at(&l->box, 0, j, k);
+        if (q->single) {
+          shift_run(run->high - run->low, l->inverse + row + run->low, by, f.at + row + run->low);
+          continue;
+        }
+        for (ptrdiff_t p = row + run->low; p < row + run->high; ++p) {
           const int32_t pocket = q->united[q->label[p]];
           if (pocket >= 0)
             f.at[p] -= (cf_real)(q->sum[pocket] / q->cells[pocket] - (kept ? q->mean[pocket] : 0));
         }
+      }
 }
 
 void cf_pockets_remove_means(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {

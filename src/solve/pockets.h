@@ -18,6 +18,7 @@ typedef struct cf_pockets {
   int32_t *label;     /* of every cell, in pages like the level's */
   double *sum, *mean; /* one a pocket (at most as many as labels) */
   double *cells;
+  bool single;      /* there is one pocket, and every cell that has an equation is in it */
   int64_t followed; /* the update of the tiles that the labels are right for */
 } cf_pockets;
 

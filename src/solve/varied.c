@@ -196,35 +196,65 @@ static void fill_cell(const filling *f, const int at[3], const ptrdiff_t p) {
   if (v->alpha.at != NULL && v->alpha.at == v->own_alpha.at) v->own_alpha.at[p] = (cf_real)(alpha + surplus);
 }
 
+/* Least and largest of what is met. */
+typedef struct range {
+  double least, most;
+} range;
+
+static range wider(const range a, const range b) {
+  return (range){b.least < a.least ? b.least : a.least, b.most > a.most ? b.most : a.most};
+}
+
+/* Of a run of f, where the cells are inside; kind NULL: all are. */
+CF_CLONES static range range_of_run(const int n, const cf_real *f, const unsigned char *kind) {
+  cf_real least = (cf_real)INFINITY, most = -(cf_real)INFINITY;
+  if (kind == NULL) {
+#pragma omp simd reduction(min : least) reduction(max : most)
+    for (int i = 0; i < n; ++i) {
+      least = f[i] < least ? f[i] : least;
+      most = f[i] > most ? f[i] : most;
+    }
+    return (range){(double)least, (double)most};
+  }
+#pragma omp simd reduction(min : least) reduction(max : most)
+  for (int i = 0; i < n; ++i) {
+    const bool inside = kind[i] == CF_CELL_INSIDE;
+    least = inside && f[i] < least ? f[i] : least;
+    most = inside && f[i] > most ? f[i] : most;
+  }
+  return (range){(double)least, (double)most};
+}
+
+/* Of a field that has the cells' indices. */
+static range range_of(const cf_varied *v, const cf_real *f) {
+  const cf_coupled *l = &v->level[0];
+  double least = INFINITY, most = -INFINITY;
+#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(l)) reduction(min      \
+                                                                                       : least) \
+    reduction(max                                                                               \
+              : most)
+  for (ptrdiff_t r = 0; r < l->rows; ++r)
+    CF_TILE_ROWS (l, r, j, k)
+      CF_TILE_RUNS (l, r, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        const range all =
+            wider((range){least, most},
+                  range_of_run(run->high - run->low, f + p, v->region != NULL ? v->region->kind + p : NULL));
+        least = all.least, most = all.most;
+      }
+  return (range){least, most};
+}
+
 /* The largest alpha and beta that the equation meets, and the least alpha. */
 static void find_range(const filling *f, double *alpha, double *least, double *beta) {
-  const cf_coupled *l = &f->v->level[0];
-  double largest = f->c->alpha_at != NULL ? 0 : f->c->alpha,
-         lowest = f->c->alpha_at != NULL ? INFINITY : f->c->alpha;
-  double widest = f->c->beta_at != NULL ? 0 : f->c->beta;
-#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(l)) reduction(max                \
-                                                                                       : largest, widest) \
-    reduction(min                                                                                         \
-              : lowest)
-  for (ptrdiff_t v = 0; v < l->rows; ++v)
-    CF_TILE_ROWS (l, v, j, k)
-      CF_TILE_RUNS (l, v, run)
-        for (int i = run->low; i < run->high; ++i) {
-          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
-          if (kind_of(f->v, p) != CF_CELL_INSIDE) continue;
-          if (f->c->alpha_at != NULL) {
-            const double a = (double)f->c->alpha_at->at[p];
-            largest = a > largest ? a : largest;
-            lowest = a < lowest ? a : lowest;
-          }
-          for (int a = 0; a < l->dim && f->c->beta_at != NULL; ++a) {
-            const double b = (double)f->c->beta_at->at[a][p];
-            widest = b > widest ? b : widest;
-          }
-        }
-  *alpha = largest;
-  *least = lowest;
-  *beta = widest;
+  range of_alpha = {f->c->alpha, f->c->alpha}, of_beta = {0, f->c->beta};
+  if (f->c->alpha_at != NULL) of_alpha = wider((range){INFINITY, 0}, range_of(f->v, f->c->alpha_at->at));
+  if (f->c->beta_at != NULL) of_beta.most = 0;
+  for (int a = 0; a < f->v->A->grid.box.dim && f->c->beta_at != NULL; ++a)
+    of_beta = wider(of_beta, range_of(f->v, f->c->beta_at->at[a]));
+  *alpha = of_alpha.most;
+  *least = of_alpha.least;
+  *beta = of_beta.most;
 }
 
 static cf_status choose_fields(cf_varied *v, const cf_coefficients *c) {
@@ -241,9 +271,9 @@ static cf_status choose_fields(cf_varied *v, const cf_coefficients *c) {
   if (c->beta_at != NULL)
     for (int a = 0; a < v->A->grid.box.dim; ++a)
       cf_halo_fill(&v->A->grid.box, &v->A->level[0].wrap, 0, a, c->beta_at->at[a]);
-  if (c->region == NULL && c->beta_at != NULL) {
+  if (c->region == NULL) {
     cf_face_destroy(&v->own_beta, &v->A->grid.box);
-    v->beta = *c->beta_at;
+    v->beta = v->given_beta;
     return CF_OK;
   }
   CF_TRY(face_create(v, &v->own_beta));
@@ -292,6 +322,12 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
   const double couplings = 2 * A->grid.box.dim * beta * f.h2;
   f.scale = alpha + couplings > 0 ? 1 / CF_MAX(alpha + couplings, 1e-300) : 1;
   v->scale = f.scale;
+  v->sweeps = cf_varied_set_sweeps(v, least, least > 0 ? couplings / least : INFINITY);
+  if (v->sweeps) {
+    v->depth = 1;
+    v->pockets.count = 0;
+    return CF_OK;
+  }
   cf_coupled *l = &v->level[0];
   CF_PARALLEL_COUPLED (l, r)
     CF_TILE_ROWS (l, r, j, k)
@@ -309,8 +345,12 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
 
 int cf_varied_depth(const cf_varied *v) { return v->depth; }
 
+const char *cf_varied_method(const cf_varied *v) {
+  return v->sweeps ? "sor" : v->depth == 1 ? "pcg" : "multigrid-pcg";
+}
+
 double cf_varied_wall_beta(const cf_varied *v, const int axis, const ptrdiff_t face) {
-  return (double)v->beta.at[axis][face];
+  return v->beta.at[0] != NULL ? (double)v->beta.at[axis][face] : v->beta_number;
 }
 
 void cf_varied_add_held(const cf_varied *v, const cf_cell b) {

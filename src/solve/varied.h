@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * The path of cf_helmholtz_solve for coefficients that vary and for regions: conjugate gradients in the precision of the
- * state around one V-cycle in single precision over levels of couplings (coupled.h).
+ * state around one V-cycle in single precision over levels of couplings (coupled.h); or, where diffusion adds little to
+ * the diagonal, half sweeps alone (varied_sweeps.c).
  *
  * Where no alpha and no known value fixes the level of a part of the region, that part is a pocket: its right side is made
  * to sum to zero and its solution keeps the mean it came with, each pocket for itself.
@@ -39,7 +40,8 @@ void cf_varied_add_held(const cf_varied *v, cf_cell b);
 /* beta on a face of a wall of the box: 0 where the cell beside it (p) is not inside. */
 double cf_varied_wall_beta(const cf_varied *v, int axis, ptrdiff_t face);
 
-/* Levels in use. */
+/* Levels in use, and "sor", "pcg" or "multigrid-pcg". */
 int cf_varied_depth(const cf_varied *v);
+const char *cf_varied_method(const cf_varied *v);
 
 #endif

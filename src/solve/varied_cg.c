@@ -70,11 +70,17 @@ static double floor_of(const cf_varied *v, const cf_varied_sums *s) {
   return size * size * s->third;
 }
 
-static cf_status check_sums(const cf_varied_sums *s) {
-  if (isfinite(s->first) && isfinite(s->second)) return CF_OK;
-  return cf_fail(CF_NOT_FINITE,
-                 "the equation to solve holds a value that is not finite (|b| = %g, |b - A x| = %g)",
-                 sqrt(s->second), sqrt(s->first));
+cf_status cf_varied_judge(const cf_varied *v, const cf_varied_sums *s, const cf_solve_options *o,
+                          cf_solve_report *report) {
+  if (!isfinite(s->first) || !isfinite(s->second))
+    return cf_fail(CF_NOT_FINITE,
+                   "the equation to solve holds a value that is not finite (|b| = %g, |b - A x| = %g)",
+                   sqrt(s->second), sqrt(s->first));
+  const double bb = s->second, enough = o->tolerance * o->tolerance * bb;
+  const double rounding = CF_MIN(NEAR_ROUNDING * floor_of(v, s), ROUNDING_PASSES * bb);
+  report->residual = bb > 0 ? sqrt(s->first / bb) : 0;
+  report->converged = bb == 0 || s->first <= CF_MAX(enough, rounding);
+  return CF_OK;
 }
 
 /* Starts until the residual's square is `enough` or nothing is gained; *s: what has been formed of x. */
@@ -102,22 +108,19 @@ static void approach(cf_varied *v, const cf_cell b, const double enough, const i
 
 cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                           cf_solve_report *report) {
+  if (v->sweeps) return cf_varied_sweep(v, b, o, x, report);
   const cf_coupled *l = &v->level[0];
   cf_pockets_remove_means(&v->pockets, l, b);
   cf_pockets_keep_means(&v->pockets, l, x);
+  report->pockets = v->pockets.count;
   cf_varied_sums s = cf_varied_form(v, x, b);
-  CF_TRY(check_sums(&s));
+  CF_TRY(cf_varied_judge(v, &s, o, report));
   if (s.second == 0) {
     cf_varied_clear(v, x);
-    s.first = 0;
+    return CF_OK;
   }
-  const double bb = s.second, enough = o->tolerance * o->tolerance * bb;
   v->careful = false;
   v->band_sweeps = BAND_SWEEPS;
-  approach(v, b, enough, o->max_iterations, x, &s, &report->iterations);
-  const double rounding = CF_MIN(NEAR_ROUNDING * floor_of(v, &s), ROUNDING_PASSES * bb);
-  report->residual = bb > 0 ? sqrt(s.first / bb) : 0;
-  report->converged = s.first <= CF_MAX(enough, rounding);
-  report->pockets = v->pockets.count;
-  return CF_OK;
+  approach(v, b, o->tolerance * o->tolerance * s.second, o->max_iterations, x, &s, &report->iterations);
+  return cf_varied_judge(v, &s, o, report);
 }

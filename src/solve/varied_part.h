@@ -17,8 +17,10 @@ struct cf_varied {
   const cf_tiles *tiles;   /* of the region */
   cf_coupled level[CF_LEVELS_MAX];
   int levels, depth; /* made; in use */
-  bool careful;      /* the cycle is symmetric: slower, and never led astray */
-  int band_sweeps;   /* over the band near walls, before and after the coarse correction */
+  bool sweeps;       /* half sweeps alone do; `jacobi`: the most that diffusion has of a diagonal */
+  double jacobi;
+  bool careful;    /* the cycle is symmetric: slower, and never led astray */
+  int band_sweeps; /* over the band near walls, before and after the coarse correction */
   cf_band band;
   cf_pockets pockets;
 
@@ -58,6 +60,14 @@ typedef struct cf_varied_sums {
 /* r = b - A x; the squares of r, of b, and of x times the diagonal (as level 0 has it). */
 cf_varied_sums cf_varied_form(const cf_varied *v, cf_cell x, cf_cell b);
 
+/* Row (j, k) of that, of the level's group of rows `row`, with the first `count` sums; so many sums of all rows. */
+void cf_varied_form_row(const cf_varied *v, int j, int k, ptrdiff_t row, int count, cf_cell x, cf_cell b);
+cf_varied_sums cf_varied_add_up(const cf_varied *v, int count);
+
+/* Residual and convergence from what has been formed. CF_NOT_FINITE. */
+cf_status cf_varied_judge(const cf_varied *v, const cf_varied_sums *s, const cf_solve_options *o,
+                          cf_solve_report *report);
+
 /* level[0].r = scale r: the cycle's right side. */
 void cf_varied_convert(const cf_varied *v, double scale);
 
@@ -70,5 +80,16 @@ cf_varied_sums cf_varied_probe(const cf_varied *v);
 
 /* x += a p, r -= a A p, and the next right side of the cycle; the square of r. */
 double cf_varied_advance(const cf_varied *v, double a, double scale, cf_cell x);
+
+/* --- half sweeps alone (varied_sweeps.c) --------------------------------------------------------------- */
+
+/* Up to this stiffness (share of diffusion in the diagonal over alpha's) they do. */
+#define CF_SWEEPS_ENOUGH 10
+
+/* Whether they do here, with alpha the least one; fills the diagonal. */
+bool cf_varied_set_sweeps(cf_varied *v, double alpha, double stiffness);
+
+cf_status cf_varied_sweep(cf_varied *v, cf_cell b, const cf_solve_options *o, cf_cell x,
+                          cf_solve_report *report);
 
 #endif

@@ -11,112 +11,100 @@
 #include "grid/sweep.h"
 #include "solve/varied.h"
 #include "solve/varied_part.h"
+#include "solve/varied_row.h"
 
 /* --- rows --------------------------------------------------------------------------------------------- */
 
-typedef struct operator_row {
-  const cf_real *x, *alpha, *beta[3];
-  const cf_real *lo_x, *hi_x;
-  cf_real lo[3], hi[3], alpha_number;
-  ptrdiff_t stride[3];
-  cf_real *y;
-  const cf_real *b; /* of a residual, and where there is an equation */
-  const float *inverse;
-} operator_row;
-
-/* form: alpha is a number (0) or a field (1). */
-CF_KERNEL void operate(const int dim, const int form, const int n, const operator_row *of, const int unused) {
+CF_KERNEL void operate(const int dim, const int form, const int n, const cf_varied_row *of,
+                       const int unused) {
   (void)unused;
-  const operator_row o = *of;
+  const cf_varied_row o = *of;
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
-    cf_real sum = (form ? o.alpha[i] : o.alpha_number) * o.x[i];
+    cf_real sum = cf_alpha_at(form, &o, i) * o.x[i];
     CF_AXIS_LOOP
     for (int a = 0; a < dim; ++a) {
       const ptrdiff_t s = o.stride[a];
-      const cf_real lo = (a == 0 ? o.lo_x[i] : o.lo[a]) * o.beta[a][i];
-      const cf_real hi = (a == 0 ? o.hi_x[i] : o.hi[a]) * o.beta[a][i + s];
-      sum += lo * (o.x[i] - o.x[i - s]) - hi * (o.x[i + s] - o.x[i]);
+      sum += cf_low_at(form, &o, a, i) * (o.x[i] - o.x[i - s]) -
+             cf_high_at(form, &o, a, i) * (o.x[i + s] - o.x[i]);
     }
     o.y[i] = sum;
   }
 }
-CF_CLONED_FORMS(operate, const operator_row *, const int)
+CF_VARIED_ROWS(operate, const int)
 
 /* y = b - A x where the cell has an equation, else 0: in double, so that of the rounding only that of x itself is seen. */
-CF_KERNEL void remain(const int dim, const int form, const int n, const operator_row *of, const int unused) {
+CF_KERNEL void remain(const int dim, const int form, const int n, const cf_varied_row *of, const int unused) {
   (void)unused;
-  const operator_row o = *of;
+  const cf_varied_row o = *of;
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
     const double x = (double)o.x[i];
-    double sum = (double)(form ? o.alpha[i] : o.alpha_number) * x;
+    double sum = (double)cf_alpha_at(form, &o, i) * x;
     CF_AXIS_LOOP
     for (int a = 0; a < dim; ++a) {
       const ptrdiff_t s = o.stride[a];
-      const double lo = (double)(a == 0 ? o.lo_x[i] : o.lo[a]) * (double)o.beta[a][i];
-      const double hi = (double)(a == 0 ? o.hi_x[i] : o.hi[a]) * (double)o.beta[a][i + s];
-      sum += lo * (x - (double)o.x[i - s]) - hi * ((double)o.x[i + s] - x);
+      sum += (double)cf_low_at(form, &o, a, i) * (x - (double)o.x[i - s]) -
+             (double)cf_high_at(form, &o, a, i) * ((double)o.x[i + s] - x);
     }
     o.y[i] = o.inverse[i] > 0 ? (cf_real)((double)o.b[i] - sum) : 0;
   }
 }
-CF_CLONED_FORMS(remain, const operator_row *, const int)
-
-static operator_row row_of(const cf_varied *v, const cf_run *run, const int j, const int k, const cf_real *x,
-                           cf_real *y) {
-  const cf_box *b = &v->A->grid.box;
-  const ptrdiff_t p = cf_box_at(b, run->low, j, k);
-  const bool deep = b->dim == 3;
-  return (operator_row){.x = x + p,
-                        .alpha = v->alpha.at != NULL ? v->alpha.at + p : NULL,
-                        .beta = {v->beta.at[0] + p, v->beta.at[1] + p, deep ? v->beta.at[2] + p : NULL},
-                        .lo_x = v->lo[0] + run->low,
-                        .hi_x = v->hi[0] + run->low,
-                        .lo = {0, v->lo[1][j], deep ? v->lo[2][k] : 0},
-                        .hi = {0, v->hi[1][j], deep ? v->hi[2][k] : 0},
-                        .alpha_number = (cf_real)v->alpha_number,
-                        .stride = {b->stride[0], b->stride[1], b->stride[2]},
-                        .y = y + p};
-}
+CF_VARIED_ROWS(remain, const int)
 
 /* y = A x on a run. */
-static void operate_run(const cf_varied *v, const cf_run *run, const int j, const int k, const cf_real *x,
-                        cf_real *y) {
-  const operator_row o = row_of(v, run, j, k, x, y);
-  operate_by_form(v->A->grid.box.dim, v->alpha.at != NULL, run->high - run->low, &o, 0);
+static void operate_run(const cf_varied *v, const cf_run *run, const int j, const int k, const cf_cell x,
+                        const cf_cell y) {
+  cf_varied_row o = cf_varied_row_of(v, run, j, k, x);
+  o.y = y.at + cf_box_at(&v->A->grid.box, run->low, j, k);
+  operate_row(v->A->grid.box.dim, cf_varied_form_of(v), run->high - run->low, &o, 0);
 }
 
-CF_CLONES static void dot_run(const int n, const cf_real *x, const cf_real *y, double lane[CF_SUM_LANES]) {
-  int i = 0;
-  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
-    for (int l = 0; l < CF_SUM_LANES; ++l) lane[l] += (double)x[i + l] * (double)y[i + l];
-  for (int l = 0; i < n; ++i, ++l) lane[l] += (double)x[i] * (double)y[i];
-}
+/* Adds the products of two runs to the lanes of their row. */
+#define DOT_LOOP(n, f, g, lane)                                                           \
+  double sum[CF_SUM_LANES];                                                               \
+  int i = 0;                                                                              \
+  memcpy(sum, lane, sizeof sum);                                                          \
+  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)                                        \
+    for (int l = 0; l < CF_SUM_LANES; ++l) sum[l] += (double)f[i + l] * (double)g[i + l]; \
+  for (int l = 0; i < n; ++i, ++l) sum[l] += (double)f[i] * (double)g[i];                 \
+  memcpy(lane, sum, sizeof sum);
+
+CF_CLONES static void dot_run(const int n, const cf_real *x, const cf_real *y,
+                              double lane[CF_SUM_LANES]){DOT_LOOP(n, x, y, lane)}
 
 CF_CLONES static void mixed_dot_run(const int n, const float *z, const cf_real *y,
-                                    double lane[CF_SUM_LANES]) {
-  int i = 0;
-  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES)
-    for (int l = 0; l < CF_SUM_LANES; ++l) lane[l] += (double)z[i + l] * (double)y[i + l];
-  for (int l = 0; i < n; ++i, ++l) lane[l] += (double)z[i] * (double)y[i];
-}
+                                    double lane[CF_SUM_LANES]){DOT_LOOP(n, z, y, lane)}
 
-/* Adds the squares of b, and of x times the diagonal, where the cell has an equation. */
-CF_CLONES static void size_run(const int n, const operator_row *o, double bb[CF_SUM_LANES],
-                               double xx[CF_SUM_LANES]) {
-  double b[CF_SUM_LANES], x[CF_SUM_LANES];
+/* The squares of b where the cell has an equation. */
+CF_CLONES static void side_run(const int n, const cf_varied_row *o, double lane[CF_SUM_LANES]) {
+  double sum[CF_SUM_LANES], b[CF_SUM_LANES];
+  memcpy(sum, lane, sizeof sum);
   for (int i = 0; i < n; i += CF_SUM_LANES) {
     const int lanes = CF_MIN(CF_SUM_LANES, n - i);
+    for (int l = 0; l < CF_SUM_LANES; ++l) b[l] = 0;
+    CF_ROW_LOOP
+    for (int l = 0; l < lanes; ++l) b[l] = o->inverse[i + l] > 0 ? (double)o->b[i + l] : 0;
+    for (int l = 0; l < CF_SUM_LANES; ++l) sum[l] += b[l] * b[l];
+  }
+  memcpy(lane, sum, sizeof sum);
+}
+
+/* The squares of x times the diagonal, where the cell has an equation. */
+CF_CLONES static void size_run(const int n, const cf_varied_row *o, double lane[CF_SUM_LANES]) {
+  double sum[CF_SUM_LANES], x[CF_SUM_LANES];
+  memcpy(sum, lane, sizeof sum);
+  for (int i = 0; i < n; i += CF_SUM_LANES) {
+    const int lanes = CF_MIN(CF_SUM_LANES, n - i);
+    for (int l = 0; l < CF_SUM_LANES; ++l) x[l] = 0;
     CF_ROW_LOOP
     for (int l = 0; l < lanes; ++l) {
       const bool has = o->inverse[i + l] > 0;
-      const float inverse = has ? o->inverse[i + l] : 1;
-      b[l] = has ? (double)o->b[i + l] : 0;
-      x[l] = has ? (double)o->x[i + l] / (double)inverse : 0;
+      x[l] = has ? (double)o->x[i + l] * (double)(1 / (has ? o->inverse[i + l] : 1)) : 0;
     }
-    for (int l = 0; l < lanes; ++l) bb[l] += b[l] * b[l], xx[l] += x[l] * x[l];
+    for (int l = 0; l < CF_SUM_LANES; ++l) sum[l] += x[l] * x[l];
   }
+  memcpy(lane, sum, sizeof sum);
 }
 
 CF_CLONES static void convert_run(const int n, const double scale, const cf_real *r, float *single) {
@@ -151,7 +139,7 @@ static void keep_row(const cf_varied *v, const int count, const int j, const int
     v->sums[s * cf_box_rows(b) + j + (ptrdiff_t)k * b->n[1]] = cf_sum_lanes(w->sum[s]);
 }
 
-static cf_varied_sums add_up(const cf_varied *v, const int count) {
+cf_varied_sums cf_varied_add_up(const cf_varied *v, const int count) {
   const ptrdiff_t rows = cf_box_rows(&v->A->grid.box);
   double total[3] = {0};
   for (int s = 0; s < count; ++s)
@@ -180,25 +168,30 @@ void cf_varied_set_ghosts(const cf_varied *v, const cf_cell x) {
     }
 }
 
+void cf_varied_form_row(const cf_varied *v, const int j, const int k, const ptrdiff_t row, const int count,
+                        const cf_cell x, const cf_cell b) {
+  const cf_coupled *l = &v->level[0];
+  lanes sums = {{{0}}};
+  CF_TILE_RUNS (l, row, run) {
+    const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+    const int n = run->high - run->low;
+    cf_varied_row o = cf_varied_row_of(v, run, j, k, x);
+    o.b = b.at + p;
+    o.y = v->r.at + p;
+    remain_row(l->dim, cf_varied_form_of(v), n, &o, 0);
+    dot_run(n, v->r.at + p, v->r.at + p, sums.sum[0]);
+    side_run(n, &o, sums.sum[1]);
+    if (count > 2) size_run(n, &o, sums.sum[2]);
+  }
+  keep_row(v, count, j, k, &sums);
+}
+
 cf_varied_sums cf_varied_form(const cf_varied *v, const cf_cell x, const cf_cell b) {
   const cf_coupled *l = &v->level[0];
   cf_varied_set_ghosts(v, x);
   CF_PARALLEL_COUPLED (l, w)
-    CF_TILE_ROWS (l, w, j, k) {
-      lanes row = {{{0}}};
-      CF_TILE_RUNS (l, w, run) {
-        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
-        const int n = run->high - run->low;
-        operator_row o = row_of(v, run, j, k, x.at, v->r.at);
-        o.b = b.at + p;
-        o.inverse = l->inverse + p;
-        remain_by_form(l->dim, v->alpha.at != NULL, n, &o, 0);
-        dot_run(n, v->r.at + p, v->r.at + p, row.sum[0]);
-        size_run(n, &o, row.sum[1], row.sum[2]);
-      }
-      keep_row(v, 3, j, k, &row);
-    }
-  return add_up(v, 3);
+    CF_TILE_ROWS (l, w, j, k) cf_varied_form_row(v, j, k, w, 3, x, b);
+  return cf_varied_add_up(v, 3);
 }
 
 void cf_varied_convert(const cf_varied *v, const double scale) {
@@ -223,7 +216,7 @@ cf_varied_sums cf_varied_test_correction(const cf_varied *v) {
       }
       keep_row(v, 2, j, k, &row);
     }
-  return add_up(v, 2);
+  return cf_varied_add_up(v, 2);
 }
 
 void cf_varied_turn(const cf_varied *v, const double beta) {
@@ -247,13 +240,13 @@ cf_varied_sums cf_varied_probe(const cf_varied *v) {
       lanes row = {{{0}}};
       CF_TILE_RUNS (l, w, run) {
         const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
-        operate_run(v, run, j, k, v->p.at, v->Ap.at);
+        operate_run(v, run, j, k, v->p, v->Ap);
         dot_run(run->high - run->low, v->p.at + p, v->Ap.at + p, row.sum[0]);
         dot_run(run->high - run->low, v->p.at + p, v->r.at + p, row.sum[1]);
       }
       keep_row(v, 2, j, k, &row);
     }
-  return add_up(v, 2);
+  return cf_varied_add_up(v, 2);
 }
 
 double cf_varied_advance(const cf_varied *v, const double a, const double scale, const cf_cell x) {
@@ -270,7 +263,7 @@ double cf_varied_advance(const cf_varied *v, const double a, const double scale,
       }
       keep_row(v, 1, j, k, &row);
     }
-  return add_up(v, 1).first;
+  return cf_varied_add_up(v, 1).first;
 }
 
 void cf_varied_clear(const cf_varied *v, const cf_cell x) {
@@ -297,7 +290,7 @@ void cf_varied_apply(cf_varied *v, const cf_cell x, const cf_cell y) {
   cf_varied_set_ghosts(v, x);
   CF_PARALLEL_COUPLED (l, w)
     CF_TILE_ROWS (l, w, j, k)
-      CF_TILE_RUNS (l, w, run) operate_run(v, run, j, k, x.at, y.at);
+      CF_TILE_RUNS (l, w, run) operate_run(v, run, j, k, x, y);
 }
 
 double cf_varied_residual(cf_varied *v, const cf_cell x, const cf_cell b) {

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Half sweeps on a level of couplings, and its residual.
+ */
+#include "solve/coupled.h"
+
+/* --- seams -------------------------------------------------------------------------------------------- */
+
+/* A ghost that is right already is not written: its page may not be ours to touch. */
+static void copy_ghost(float *to, const float from) {
+  if (*to != from) *to = from;
+}
+
+void cf_coupled_wrap_axis(const cf_coupled *l, const int a, float *f) {
+  const cf_box *b = &l->box;
+  if (!l->periodic[a]) return;
+  int n[3] = {b->n[0], b->n[1], b->n[2]};
+  const ptrdiff_t last = (b->n[a] - 1) * b->stride[a], step = b->stride[a];
+  n[a] = 1;
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j)
+      for (int i = 0; i < n[0]; ++i) {
+        float *at = f + cf_box_at(b, i, j, k);
+        copy_ghost(at - step, at[last]);
+        copy_ghost(at + last + step, at[0]);
+      }
+}
+
+void cf_coupled_wrap(const cf_coupled *l, float *f) {
+  for (int a = 0; a < l->dim; ++a) cf_coupled_wrap_axis(l, a, f);
+}
+
+/* --- half sweeps -------------------------------------------------------------------------------------- */
+
+/* Cells of a row that go together. */
+#define APART 512
+
+/* The level as the kernels of a row see it, and where the row is. */
+typedef struct view {
+  float *e, *rest;
+  const float *r, *inverse, *free, *held, *c[3];
+  ptrdiff_t stride[3];
+  float omega;
+} view;
+
+typedef struct place {
+  ptrdiff_t p;
+  int parity; /* of the cells meant, counted from p */
+} place;
+
+static view view_of(const cf_coupled *l, const float omega) {
+  return (view){.e = l->e,
+                .rest = l->rest,
+                .r = l->r,
+                .inverse = l->inverse,
+                .free = l->free,
+                .held = l->held,
+                .c = {l->c[0], l->c[1], l->c[2]},
+                .stride = {l->box.stride[0], l->box.stride[1], l->box.stride[2]},
+                .omega = omega};
+}
+
+CF_KERNEL void first_row(const int dim, const int n, const view *v, const place at) {
+  (void)dim;
+  float *e = v->e + at.p;
+  const float *r = v->r + at.p, *inverse = v->inverse + at.p;
+  const float omega = v->omega;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) e[i] = ((i ^ at.parity) & 1) == 0 ? omega * (inverse[i] * r[i]) : 0;
+}
+
+/* Neighbours have the other colour, so rows may run in any order and the loop in vectors; both colours are computed and
+ * one is kept, so that what is read while another thread changes it does not count. Changes are put down apart first:
+ * a vector that is loaded across one just stored waits for the store. form 1: a cell is over-relaxed by what couplings
+ * have of its diagonal; one that a large alpha holds is simply solved. */
+CF_KERNEL void half_piece(const int dim, const int form, const int n, const view *v, const place at) {
+  const view w = *v;
+  float *e = w.e + at.p;
+  const float *r = w.r + at.p, *inverse = w.inverse + at.p;
+  float fresh[APART];
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    float sum = r[i];
+    CF_AXIS_LOOP
+    for (int a = 0; a < dim; ++a) {
+      const float *c = w.c[a] + at.p;
+      sum += c[i] * e[i - w.stride[a]] + c[i + w.stride[a]] * e[i + w.stride[a]];
+    }
+    const float share = form ? 1 - w.free[at.p + i] * inverse[i] : 1;
+    const float over = form ? (w.omega - 1) * share * share : w.omega - 1;
+    fresh[i] = inverse[i] > 0 ? (1 + over) * (inverse[i] * sum) - over * e[i] : 0;
+  }
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i)
+    if (((i ^ at.parity) & 1) == 0) e[i] = fresh[i];
+}
+
+CF_KERNEL void half_row(const int dim, const int form, const int n, const view *v, const place at) {
+  for (int from = 0; from < n; from += APART) /* even, so that the parity stays */
+    half_piece(dim, form, CF_MIN(APART, n - from), v, (place){at.p + from, at.parity});
+}
+
+CF_KERNEL void residual_row(const int dim, const int n, const view *v, const place at) {
+  const view w = *v;
+  const float *e = w.e + at.p, *r = w.r + at.p, *free = w.free + at.p, *held = w.held + at.p;
+  float *rest = w.rest + at.p;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    float sum = (free[i] + held[i]) * e[i];
+    CF_AXIS_LOOP
+    for (int a = 0; a < dim; ++a) {
+      const float *c = w.c[a] + at.p;
+      sum += c[i] * (e[i] - e[i - w.stride[a]]) - c[i + w.stride[a]] * (e[i + w.stride[a]] - e[i]);
+    }
+    rest[i] = r[i] - sum;
+  }
+}
+
+CF_CLONED(first_row, const view *, const place)
+CF_CLONED_FORMS(half_row, const view *, const place)
+CF_CLONED(residual_row, const view *, const place)
+
+static void half_row_by_dim(const int dim, const int n, const view *v, const place at) {
+  half_row_by_form(dim, 0, n, v, at);
+}
+
+static void gentle_row_by_dim(const int dim, const int n, const view *v, const place at) {
+  half_row_by_form(dim, 1, n, v, at);
+}
+
+typedef void row_kernel(int dim, int n, const view *v, place at);
+
+static void sweep(const cf_coupled *l, row_kernel *kernel, const float omega, const int colour) {
+  const view w = view_of(l, omega);
+  CF_PARALLEL_COUPLED (l, v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run)
+        kernel(l->dim, run->high - run->low, &w,
+               (place){cf_box_at(&l->box, run->low, j, k), (j + k + colour + run->low) & 1});
+}
+
+static float relaxed(const view *v, const int dim, const ptrdiff_t p) {
+  float sum = v->r[p];
+  for (int a = 0; a < dim; ++a) {
+    const ptrdiff_t s = v->stride[a];
+    sum += v->c[a][p] * v->e[p - s] + v->c[a][p + s] * v->e[p + s];
+  }
+  return v->inverse[p] * sum;
+}
+
+static void sweep_band(const cf_coupled *l, const int sweeps) {
+  const view w = view_of(l, 1);
+  for (int v = 0; v < 2 * sweeps; ++v) {
+    const ptrdiff_t *cell = l->band[v % 2], cells = l->bands[v % 2];
+    cf_coupled_wrap(l, l->e);
+#pragma omp parallel for schedule(static) num_threads(cells < CF_SERIAL_CELLS ? 1 : l->threads)
+    for (ptrdiff_t i = 0; i < cells; ++i) w.e[cell[i]] = relaxed(&w, l->dim, cell[i]);
+  }
+}
+
+/* The last layer of an odd periodic axis and the first are neighbours of one colour, moved at once without seeing each
+ * other; the last one moves once more, so that it comes after all others of its colour as Gauss-Seidel has it. */
+static void sweep_seams(const cf_coupled *l, const int colour) {
+  const view w = view_of(l, 1);
+  for (int a = 0; a < l->dim; ++a) {
+    if (!l->periodic[a] || l->box.n[a] % 2 == 0) continue;
+    cf_coupled_wrap(l, l->e);
+    int low[3] = {0, 0, 0}, at[3];
+    low[a] = l->box.n[a] - 1;
+    for (at[2] = low[2]; at[2] < (a == 2 ? low[2] + 1 : l->box.n[2]); ++at[2])
+      for (at[1] = low[1]; at[1] < (a == 1 ? low[1] + 1 : l->box.n[1]); ++at[1])
+        for (at[0] = low[0]; at[0] < l->box.n[0]; ++at[0]) {
+          const ptrdiff_t p = cf_box_at(&l->box, at[0], at[1], at[2]);
+          if (((at[0] + at[1] + at[2] + colour) & 1) == 0 && cf_coupled_has(l, p))
+            w.e[p] = relaxed(&w, l->dim, p);
+        }
+  }
+}
+
+static void half_sweep(const cf_coupled *l, const float omega, const int colour) {
+  cf_coupled_wrap(l, l->e);
+  sweep(l, l->is_gentle ? gentle_row_by_dim : half_row_by_dim, omega, colour);
+  sweep_seams(l, colour);
+}
+
+void cf_coupled_smooth_first(const cf_coupled *l, const float omega, const int band) {
+  sweep(l, first_row_by_dim, omega, 0);
+  sweep_seams(l, 0);
+  half_sweep(l, omega, 1);
+  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band);
+}
+
+void cf_coupled_smooth(const cf_coupled *l, const float omega, const int band, const int sweeps,
+                       const int first) {
+  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band);
+  for (int v = 0; v < 2 * sweeps; ++v) half_sweep(l, omega, (v + first) % 2);
+}
+
+void cf_coupled_form_rest(const cf_coupled *l) {
+  cf_coupled_wrap(l, l->e);
+  sweep(l, residual_row_by_dim, 1, 0);
+}
