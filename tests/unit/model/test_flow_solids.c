@@ -72,14 +72,17 @@ static void a_piston_pushes_exactly_its_volume(void **state) {
   scene_close(&r);
 }
 
-/* A box that drives through a closed tank: what it pushes away before it comes together behind it. */
+/* A box that drives through a closed tank full of ink: what it pushes away before it comes together behind it, and where it
+ * has been there is ink again. */
 static void a_box_stirs_a_closed_tank_without_a_loss(void **state) {
   (void)state;
   scene_run r;
+  cf_view phi;
   scene_open(
       &r, "stirred",
       "cattaneo: 1\nmodel: flow\ndomain: {size: [2, 1], cells: [64, 32]}\n"
       "time: {end: 0.6, dt: 0.015}\n"
+      "fields: {phi: {initial: 1}}\n"
       "obstacles: [{shape: box, center: [0.5, 0.5], half: [0.2, 0.1], motion: ['t', '0'], rotation: '3*t'}]\n"
       "solver: {tolerance: 1e-5}\n",
       1);
@@ -89,6 +92,11 @@ static void a_box_stirs_a_closed_tank_without_a_loss(void **state) {
   }
   BELOW(0.01, scene_metric(&r, "kinetic_energy"));
   BELOW(scene_metric(&r, "speed_max"), 4);
+  OK(cf_sim_field(r.sim, "phi", 0, &phi));
+  CLOSE(at(&phi, 16, 16, 0), 1, 1e-3); /* where the box began */
+  CLOSE(scene_metric(&r, "min_phi"), 1, 0.05);
+  CLOSE(scene_metric(&r, "max_phi"), 1, 0.05);
+  BELOW(fabs(scene_metric(&r, "error_phi")), 1e-13);
   scene_close(&r);
 }
 
