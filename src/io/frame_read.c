@@ -43,6 +43,10 @@ static cf_status read_stamp(cf_hdf5 *h, cf_frame *f) {
   return cf_hdf5_get_integers(h, "/", "frame", 1, &f->frame);
 }
 
+static bool is_of_grid(const cf_array *a, const cf_box *b) {
+  return a->n[0] == b->n[2] && a->n[1] == b->n[1] && a->n[2] == b->n[0];
+}
+
 static cf_status visit_field(void *context, cf_hdf5 *h, const char *name) {
   cf_frame *f = context;
   cf_path path;
@@ -51,7 +55,7 @@ static cf_status visit_field(void *context, cf_hdf5 *h, const char *name) {
   cf_frame_field *field = &f->field[f->count];
   CF_TRY(cf_path_make(&path, "/VTKHDF/CellData/%s", name));
   CF_TRY(cf_hdf5_shape(h, path.text, &a));
-  if (a.rank < 3 || (a.rank == 4 && a.n[3] != 3)) return CF_OK;
+  if (a.rank < 3 || (a.rank == 4 && a.n[3] != 3) || !is_of_grid(&a, &f->grid.box)) return CF_OK;
   snprintf(field->name, sizeof field->name, "%s", name);
   if (cf_hdf5_get_text(h, path.text, "unit", field->unit, sizeof field->unit) != CF_OK) field->unit[0] = '\0';
   field->components = a.rank == 4 ? 3 : 1;

@@ -108,14 +108,25 @@ static bool shape_of(const hid_t set, cf_array *a) {
   return good;
 }
 
+/* What deflate makes of zeros is a thousandth of them: a short file cannot ask for much memory. */
+static bool is_room_for(const cf_hdf5 *h, const cf_array *a) {
+  const double most_packed = 1100;
+  double bytes = a->element == CF_ELEMENT_BYTE ? 1 : 8;
+  hsize_t size = 0;
+  for (int d = 0; d < a->rank; ++d) bytes *= (double)a->n[d];
+  return H5Fget_filesize(h->file, &size) >= 0 && bytes <= most_packed * (double)size;
+}
+
 cf_status cf_hdf5_shape(cf_hdf5 *h, const char *path, cf_array *a) {
   if (!cf_hdf5_has(h, path)) return cf_fail(CF_BAD_FILE, "%s: has no array %s", h->draft.path.text, path);
   const hid_t set = H5Dopen2(h->file, path, H5P_DEFAULT);
   const bool good = set >= 0 && shape_of(set, a);
   if (set >= 0) H5Dclose(set);
   H5Eclear2(H5E_DEFAULT);
-  if (good) return CF_OK;
-  return cf_fail(CF_BAD_FILE, "%s: %s is not an array of numbers", h->draft.path.text, path);
+  if (!good) return cf_fail(CF_BAD_FILE, "%s: %s is not an array of numbers", h->draft.path.text, path);
+  if (is_room_for(h, a)) return CF_OK;
+  return cf_fail(CF_BAD_FILE, "%s: %s says that it is larger than the file can hold", h->draft.path.text,
+                 path);
 }
 
 static void shape_text(const cf_array *a, char *text, const size_t size) {

@@ -17,9 +17,12 @@
 #include "grid/mesh.h"
 #include "io/checkpoint.h"
 #include "io/expr.h"
+#include "io/frame.h"
 #include "io/image.h"
+#include "io/info.h"
 #include "io/mesh.h"
 #include "io/npy.h"
+#include "io/points.h"
 #include "model/atlas.h"
 #include "model/scene.h"
 #include "session/space.h"
@@ -115,6 +118,32 @@ static void checkpoint(const uint8_t *bytes, const size_t size) {
   const char *path = file_of(bytes, size, ".h5");
   judge(cf_checkpoint_describe(path, &facts, &saved));
   cf_free(saved);
+  unlink(path);
+}
+
+/* What pictures are made of, and what `info` tells. */
+static void frame(const uint8_t *bytes, const size_t size) {
+  const char *path = file_of(bytes, size, ".vtkhdf");
+  cf_frame f;
+  cf_points p;
+  cf_cell values;
+  float *ages;
+  char *text;
+  judge(cf_info_text(path, &text));
+  cf_free(text);
+  const cf_status fields = cf_frame_read(&f, path);
+  judge(fields);
+  if (fields == CF_OK && f.count > 0 && cf_cell_create(&values, &f.grid.box) == CF_OK) {
+    judge(cf_frame_read_cell(&f, f.field[0].name, 0, values));
+    cf_cell_destroy(&values, &f.grid.box);
+  }
+  const cf_status points = cf_points_read(&p, path);
+  judge(points);
+  if (points == CF_OK) {
+    judge(cf_points_attribute(&p, "age", 1, &ages));
+    cf_free(ages);
+  }
+  cf_points_clear(&p);
   unlink(path);
 }
 

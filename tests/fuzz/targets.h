@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #define TARGETS(T) \
-  T(scene) T(override) T(expression) T(unit) T(checkpoint) T(ply) T(obj) T(image) T(npy) T(atlas)
+  T(scene) T(override) T(expression) T(unit) T(checkpoint) T(frame) T(ply) T(obj) T(image) T(npy) T(atlas)
 
 typedef struct target {
   const char *name;
