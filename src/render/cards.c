@@ -320,7 +320,9 @@ static void lay_over(const sprite *s, const cf_cards *all, const cf_cards_light 
       const size_t p = (size_t)j * (size_t)film->width + (size_t)i;
       float t[4];
       patch_at(&b->seen, i, j, t);
-      if (t[0] <= 0 || film->distance[p] < s->depth) continue;
+      const float open = film->distance[p] < s->depth ? 1 - film->share[p] : 1;
+      for (int m = 0; m < 4; ++m) t[m] *= open;
+      if (t[0] <= 0) continue;
       const float cover = fminf(t[0], 1), left = 1 - (1 - LETS_BY) * cover;
       const cf_vec fog = cf_vec_scale((1 - how.kept) * (1 - LETS_BY) * cover, light->haze_colour);
       const cf_vec own = cf_vec_along(fog, how.kept, sent(&how, light, t));

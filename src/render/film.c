@@ -13,7 +13,8 @@ cf_status cf_film_create(cf_film *f, const int width, const int height) {
   const size_t pixels = (size_t)width * (size_t)height;
   *f = (cf_film){.width = width, .height = height};
   CF_TRY(CF_NEW(&f->light, pixels));
-  const cf_status s = CF_NEW(&f->distance, pixels);
+  cf_status s = CF_NEW(&f->distance, pixels);
+  if (s == CF_OK) s = CF_NEW(&f->share, pixels);
   if (s != CF_OK) cf_film_destroy(f);
   return s;
 }
@@ -21,6 +22,7 @@ cf_status cf_film_create(cf_film *f, const int width, const int height) {
 void cf_film_destroy(cf_film *f) {
   cf_free(f->light);
   cf_free(f->distance);
+  cf_free(f->share);
   *f = (cf_film){.light = NULL};
 }
 

@@ -21,8 +21,10 @@
 
 typedef struct cf_film {
   int width, height;
-  cf_vec *light;   /* rows from the top */
-  float *distance; /* of what is seen, along the camera's axis, m; INFINITY: nothing */
+  cf_vec *light; /* rows from the top */
+  float
+      *distance; /* of what is seen in a pixel, along the camera's axis, in the mean, m; INFINITY: nothing */
+  float *share;  /* of the pixel that it covers */
 } cf_film;
 
 cf_status cf_film_create(cf_film *f, int width, int height);

@@ -95,13 +95,18 @@ static cf_vec see(const cf_stage *stage, cf_ray ray, const cf_vec behind, cf_dic
 /* A number in [0, 1) as one in -1 .. 1 with the density of a tent: neighbouring pixels share what lies between. */
 static float tent(const float s) { return s < 0.5f ? sqrtf(2 * s) - 1 : 1 - sqrtf(2 - 2 * s); }
 
-/* Samples first .. end - 1 of a pixel, added up. */
-static cf_vec expose_pixel(const cf_stage *stage, const cf_lens *lens, const int pixel[2], const int first,
-                           const int end, cf_film *f) {
+/* Samples of a pixel, added up: light, those that met something, and how far that was. */
+typedef struct exposure {
+  cf_vec light;
+  float met, far;
+} exposure;
+
+/* Samples first .. end - 1. */
+static void expose_pixel(const cf_stage *stage, const cf_lens *lens, const int pixel[2], const int first,
+                         const int end, exposure *e) {
   const cf_studio *s = stage->studio;
-  const size_t p = (size_t)pixel[1] * (size_t)f->width + (size_t)pixel[0];
   const float wide = (float)s->width, tall = (float)s->height;
-  cf_vec sum = {0, 0, 0};
+  const uint64_t p = (uint64_t)pixel[1] * (uint64_t)s->width + (uint64_t)pixel[0];
   for (int i = first; i < end; ++i) {
     cf_dice dice = {.pixel = cf_random_mix(s->seed) ^ p, .sample = (uint32_t)i};
     float at[2], disc[2], distance;
@@ -115,10 +120,9 @@ static cf_vec expose_pixel(const cf_stage *stage, const cf_lens *lens, const int
     const cf_vec seen = see(stage, ray, behind, &dice, &distance);
     /* One sample that finds a lamp through a drop must not outshine all others. */
     const float most = fmaxf(seen.x, fmaxf(seen.y, seen.z));
-    sum = cf_vec_along(sum, fminf(1, BRIGHTEST / fmaxf(most, BRIGHTEST)), seen);
-    f->distance[p] = fminf(f->distance[p], distance * cf_vec_dot(ray.along, lens->forward));
+    e->light = cf_vec_along(e->light, fminf(1, BRIGHTEST / fmaxf(most, BRIGHTEST)), seen);
+    if (distance < INFINITY) e->met += 1, e->far += distance * cf_vec_dot(ray.along, lens->forward);
   }
-  return sum;
 }
 
 /* By how much the eye sees a and b differ, squared. */
@@ -130,7 +134,7 @@ static float unlike(const cf_vec a, const cf_vec b) {
 /* Pixels x0 <= x < x1, y0 <= y < y1. */
 static void expose_block(const cf_stage *stage, const cf_lens *lens, const int at[4], cf_film *f) {
   const cf_studio *s = stage->studio;
-  cf_vec sum[BLOCK * BLOCK] = {{0, 0, 0}};
+  exposure sum[BLOCK * BLOCK] = {{{0, 0, 0}, 0, 0}};
   int done = 0, pixels = (at[2] - at[0]) * (at[3] - at[1]);
   float noise = INFINITY;
   while (done < s->samples && !(noise < s->noise)) {
@@ -139,10 +143,11 @@ static void expose_block(const cf_stage *stage, const cf_lens *lens, const int a
     for (int y = at[1], n = 0; y < at[3]; ++y)
       for (int x = at[0]; x < at[2]; ++x, ++n) {
         const size_t p = (size_t)y * (size_t)f->width + (size_t)x;
-        if (done == 0) f->distance[p] = INFINITY;
-        sum[n] = cf_vec_add(sum[n], expose_pixel(stage, lens, (int[2]){x, y}, done, goal, f));
         const cf_vec before = f->light[p];
-        f->light[p] = cf_vec_scale(1 / (float)goal, sum[n]);
+        expose_pixel(stage, lens, (int[2]){x, y}, done, goal, &sum[n]);
+        f->light[p] = cf_vec_scale(1 / (float)goal, sum[n].light);
+        f->distance[p] = sum[n].met > 0 ? sum[n].far / sum[n].met : INFINITY;
+        f->share[p] = sum[n].met / (float)goal;
         square += done == 0 ? INFINITY : unlike(before, f->light[p]);
       }
     noise = sqrtf(square / (float)pixels);

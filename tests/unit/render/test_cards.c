@@ -164,12 +164,20 @@ static void what_is_near_hides_what_is_far(void **state) {
   assert_memory_equal(one.light, other.light, sizeof *one.light * WIDE * TALL);
   cf_film alone = draw(card, 1, &sharp, 0, 1);
   CLOSE(one.light[middle].y, (double)alone.light[middle].y * 1.2, 0.01); /* ice lets a fifth by */
-  /* Behind a wall at 2.5 m there is nothing of the far one. */
+  /* Behind a wall at 2.5 m there is nothing of the far one; behind one that fills a quarter of each pixel, the rest. */
   cf_flake_picture p = disc();
   const cf_cards all = {1, &p, 1, &card[1]};
-  for (int i = 0; i < WIDE * TALL; ++i) alone.light[i] = (cf_vec){0, 0, 0}, alone.distance[i] = 2.5f;
-  OK(cf_cards_draw(&all, &even, &sharp, 0, 1, &alone));
-  CLOSE(alone.light[middle].y, 0, 0);
+  float seen[3];
+  for (int quarters = 0; quarters < 3; ++quarters) {
+    for (int i = 0; i < WIDE * TALL; ++i)
+      alone.light[i] = (cf_vec){0, 0, 0}, alone.distance[i] = 2.5f,
+      alone.share[i] = quarters == 2 ? 1 : 0.25f * (float)quarters;
+    OK(cf_cards_draw(&all, &even, &sharp, 0, 1, &alone));
+    seen[quarters] = alone.light[middle].y;
+  }
+  CLOSE(seen[1], 0.75 * (double)seen[0], 1e-6);
+  CLOSE(seen[2], 0, 0);
+  assert_true(seen[0] > 0.1f);
   cf_flake_picture_destroy(&p);
   cf_film_destroy(&alone);
   cf_film_destroy(&other);
