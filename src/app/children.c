@@ -53,11 +53,17 @@ static void hear(cf_child *child) {
   child->said = NULL;
 }
 
+/* One that is told to stop before it listens simply ends. */
+static int code_of(const int how) {
+  if (WIFEXITED(how)) return WEXITSTATUS(how);
+  return WTERMSIG(how) == SIGTERM ? cf_status_exit_code(CF_STOPPED) : 128 + WTERMSIG(how);
+}
+
 static void note_end(cf_children *c, const pid_t process, const int how) {
   for (int i = 0; i < c->count; ++i) {
     if (c->child[i].process != process) continue;
     c->child[i].process = 0;
-    c->child[i].code = WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+    c->child[i].code = code_of(how);
     hear(&c->child[i]);
     if (c->ended != NULL) c->ended(c->context, i);
   }

@@ -7,7 +7,6 @@
  * refused. So the same command again finishes what was stopped.
  */
 #define _GNU_SOURCE
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -157,8 +156,7 @@ static void on_end(void *context, const int i) {
   const int code = s->child[i].code;
   ++s->done;
   cf_duration_text(now() - s->began, took, sizeof took);
-  /* One that is told to stop before it listens simply ends. */
-  if (code == cf_status_exit_code(CF_STOPPED) || code == 128 + SIGTERM)
+  if (code == cf_status_exit_code(CF_STOPPED))
     snprintf(word, sizeof word, "stopped");
   else if (code != 0)
     snprintf(word, sizeof word, "failed, exit code %d", code);
