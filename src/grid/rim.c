@@ -13,12 +13,13 @@ cf_status cf_rim_create(cf_rim *rim, const cf_box *b) {
   *rim = (cf_rim){.box = *b};
   CF_TRY(cf_pages_reserve(&pages, (size_t)b->size, false));
   rim->layer = (unsigned char *)pages + b->first;
-  return CF_OK;
+  return CF_NEW(&rim->from, cf_box_rows(b) + 1);
 }
 
 void cf_rim_destroy(cf_rim *rim) {
   if (rim->layer != NULL) cf_pages_release(rim->layer - rim->box.first, (size_t)rim->box.size);
   cf_free(rim->cell);
+  cf_free(rim->from);
   *rim = (cf_rim){0};
 }
 
@@ -30,17 +31,27 @@ static bool touches(const cf_rim *rim, const ptrdiff_t p, const int before) {
   return false;
 }
 
-static cf_status append(cf_rim *rim, const ptrdiff_t count, const ptrdiff_t p) {
-  if (count == rim->room) {
-    ptrdiff_t *larger;
-    const ptrdiff_t room = CF_MAX(1024, 2 * rim->room);
-    CF_TRY(CF_NEW(&larger, room));
-    if (count > 0) memcpy(larger, rim->cell, (size_t)count * sizeof *larger);
-    cf_free(rim->cell);
-    rim->cell = larger;
-    rim->room = room;
+/* The cells of row r that belong to layer l; cell NULL: they are only counted. */
+static ptrdiff_t find_in_row(const cf_rim *rim, const ptrdiff_t r, const int l, ptrdiff_t *cell) {
+  const ptrdiff_t row = cf_box_row(&rim->box, r);
+  ptrdiff_t count = 0;
+  for (ptrdiff_t p = row; p < row + rim->box.n[0]; ++p) {
+    if (rim->layer[p] != NONE || !touches(rim, p, INSIDE + l)) continue;
+    if (cell != NULL) cell[count] = p;
+    ++count;
   }
-  rim->cell[count] = p;
+  return count;
+}
+
+static cf_status make_room(cf_rim *rim, const ptrdiff_t used, const ptrdiff_t count) {
+  ptrdiff_t *larger;
+  if (count <= rim->room) return CF_OK;
+  const ptrdiff_t room = CF_MAX(1024, count + count / 2);
+  CF_TRY(CF_NEW(&larger, room));
+  if (used > 0) memcpy(larger, rim->cell, (size_t)used * sizeof *larger);
+  cf_free(rim->cell);
+  rim->cell = larger;
+  rim->room = room;
   return CF_OK;
 }
 
@@ -53,21 +64,26 @@ static void mark_inside(const cf_rim *rim, const cf_region *region) {
     }
 }
 
-cf_status cf_rim_find(cf_rim *rim, const cf_region *region) {
+/* Rows are counted, then each knows where its cells go: in the order of the box, whatever the threads. */
+static cf_status find_layer(cf_rim *rim, const int l, const int threads) {
   const cf_box *b = &rim->box;
-  ptrdiff_t count = 0;
+  ptrdiff_t *from = rim->from;
+  const ptrdiff_t rows = cf_box_rows(b), begin = rim->begin[l];
+  CF_PARALLEL_ROWS (b, threads, r) from[r + 1] = find_in_row(rim, r, l, NULL);
+  from[0] = begin;
+  for (ptrdiff_t r = 0; r < rows; ++r) from[r + 1] += from[r];
+  const ptrdiff_t end = from[rows];
+  CF_TRY(make_room(rim, begin, end));
+  CF_PARALLEL_ROWS (b, threads, r)
+    if (from[r + 1] > from[r]) find_in_row(rim, r, l, rim->cell + from[r]);
+  for (ptrdiff_t c = begin; c < end; ++c) rim->layer[rim->cell[c]] = (unsigned char)(FIRST + l);
+  rim->begin[l + 1] = end;
+  return CF_OK;
+}
+
+cf_status cf_rim_find(cf_rim *rim, const cf_region *region) {
   mark_inside(rim, region);
-  for (int l = 0; l < CF_RIM_LAYERS; ++l) {
-    rim->begin[l] = count;
-    for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
-      for (int i = 0; i < b->n[0]; ++i) {
-        const ptrdiff_t p = cf_box_row(b, r) + i;
-        if (rim->layer[p] != NONE || !touches(rim, p, INSIDE + l)) continue;
-        CF_TRY(append(rim, count++, p));
-      }
-    for (ptrdiff_t c = rim->begin[l]; c < count; ++c) rim->layer[rim->cell[c]] = (unsigned char)(FIRST + l);
-    rim->begin[l + 1] = count;
-  }
+  for (int l = 0; l < CF_RIM_LAYERS; ++l) CF_TRY(find_layer(rim, l, region->grid.threads));
   return CF_OK;
 }
 

@@ -17,6 +17,7 @@ typedef struct cf_rim {
   unsigned char *layer;  /* at cell (0, 0, 0): 0 none, 1 inside, 2 ... the layers */
   ptrdiff_t *cell, room; /* those of all layers, one after the other */
   ptrdiff_t begin[CF_RIM_LAYERS + 1];
+  ptrdiff_t *from; /* where the cells of every row begin, while a layer is found */
 } cf_rim;
 
 /* An empty one; cf_rim_destroy cleans up after a failure. CF_NO_MEMORY. */

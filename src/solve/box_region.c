@@ -13,6 +13,10 @@
 #include "grid/sweep.h"
 #include "solve/box_part.h"
 
+/* Where more cells than this have another parent than the block they lie in, necks of a cell are everywhere: cycles alone
+ * would gain too little, and conjugate gradients had better begin at once. */
+#define ODD_SHARE 0.015
+
 cf_status cf_box_solver_create_around(cf_box_solver **f, const cf_helmholtz *A, cf_varied *v) {
   *f = NULL;
   cf_box_solver *fresh;
@@ -84,7 +88,9 @@ static bool is_suitable(const cf_box_solver *f, const cf_helmholtz *A) {
     if (A->grid.box.n[a] < 2) return false;
   if (cf_level_is_solved_directly(&A->level[0]) || f->level[0].odd_seam) return false;
   if (!(f->scale > 1e-100) || !(f->scale < (sizeof(cf_real) == sizeof(float) ? 1e30 : 1e100))) return false;
-  return f->depth == 1 || f->varied->depth > 1;
+  if (f->depth == 1) return true;
+  const cf_coupled *l = &f->varied->level[0];
+  return f->varied->depth > 1 && (double)l->odds <= ODD_SHARE * (double)f->varied->region->inside;
 }
 
 cf_status cf_box_solver_set_around(cf_box_solver *f, const cf_helmholtz *A, const double alpha,

@@ -75,14 +75,20 @@ cf_status cf_coupled_finish(cf_coupled *l);
 /* e from e = 0: a red-black sweep, and `band` sweeps over the band. */
 void cf_coupled_smooth_first(const cf_coupled *l, float omega, int band);
 
-/* `band` sweeps over the band, then `sweeps` full ones that begin with colour `first`. */
-void cf_coupled_smooth(const cf_coupled *l, float omega, int band, int sweeps, int first);
+/* `band` sweeps over the band, then `sweeps` full ones. */
+void cf_coupled_smooth(const cf_coupled *l, float omega, int band, int sweeps);
+
+/* What smooth_first does in the opposite order: its transpose, for a cycle that must be symmetric. */
+void cf_coupled_smooth_back(const cf_coupled *l, float omega, int band);
 
 /* coarse->r = sums of the residual of `l`. */
 void cf_coupled_restrict(const cf_coupled *l, const cf_coupled *coarse);
 
 /* e += interpolated coarse->e. */
 void cf_coupled_prolong(const cf_coupled *coarse, const cf_coupled *l);
+
+/* e += coarse->e of the parent: the transpose of restriction. */
+void cf_coupled_prolong_back(const cf_coupled *coarse, const cf_coupled *l);
 
 /* Copies the outermost layers of f to the ghosts across periodic seams; of one axis. */
 void cf_coupled_wrap(const cf_coupled *l, float *f);

@@ -130,13 +130,17 @@ static void gentle_row_by_dim(const int dim, const int n, const view *v, const p
 
 typedef void row_kernel(int dim, int n, const view *v, place at);
 
-static void sweep(const cf_coupled *l, row_kernel *kernel, const float omega, const int colour) {
+/* `end`: cells from there on, along each axis, are left out. */
+static void sweep(const cf_coupled *l, row_kernel *kernel, const float omega, const int colour,
+                  const int end[3]) {
   const view w = view_of(l, omega);
   CF_PARALLEL_COUPLED (l, v)
-    CF_TILE_ROWS (l, v, j, k)
+    CF_TILE_ROWS (l, v, j, k) {
+      if (j >= end[1] || k >= end[2]) continue;
       CF_TILE_RUNS (l, v, run)
-        kernel(l->dim, run->high - run->low, &w,
+        kernel(l->dim, CF_MIN(run->high, end[0]) - run->low, &w,
                (place){cf_box_at(&l->box, run->low, j, k), (j + k + colour + run->low) & 1});
+    }
 }
 
 static float relaxed(const view *v, const int dim, const ptrdiff_t p) {
@@ -148,55 +152,80 @@ static float relaxed(const view *v, const int dim, const ptrdiff_t p) {
   return v->inverse[p] * sum;
 }
 
-static void sweep_band(const cf_coupled *l, const int sweeps) {
+/* Colours in turn, or, `back`, the other way round. */
+static void sweep_band(const cf_coupled *l, const int sweeps, const bool back) {
   const view w = view_of(l, 1);
   for (int v = 0; v < 2 * sweeps; ++v) {
-    const ptrdiff_t *cell = l->band[v % 2], cells = l->bands[v % 2];
+    const int colour = (v + back) % 2;
+    const ptrdiff_t *cell = l->band[colour], cells = l->bands[colour];
     cf_coupled_wrap(l, l->e);
 #pragma omp parallel for schedule(static) num_threads(cells < CF_SERIAL_CELLS ? 1 : l->threads)
     for (ptrdiff_t i = 0; i < cells; ++i) w.e[cell[i]] = relaxed(&w, l->dim, cell[i]);
   }
 }
 
+static bool has_odd_seam(const cf_coupled *l, const int a) { return l->periodic[a] && l->box.n[a] % 2 == 1; }
+
+/* Cells of a colour in the last layer of axis a, one after the other. */
+static void sweep_seam(const cf_coupled *l, const int a, const int colour, const bool back) {
+  const view w = view_of(l, 1);
+  int low[3] = {0, 0, 0}, n[3] = {l->box.n[0], l->box.n[1], l->box.n[2]};
+  if (!has_odd_seam(l, a)) return;
+  cf_coupled_wrap(l, l->e);
+  low[a] = n[a] - 1;
+  n[a] = 1;
+  const ptrdiff_t cells = (ptrdiff_t)n[0] * n[1] * n[2];
+  for (ptrdiff_t v = 0; v < cells; ++v) {
+    const ptrdiff_t c = back ? cells - 1 - v : v;
+    const int i = low[0] + (int)(c % n[0]), j = low[1] + (int)(c / n[0] % n[1]),
+              k = low[2] + (int)(c / n[0] / n[1]);
+    const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+    if (((i + j + k + colour) & 1) == 0) w.e[p] = relaxed(&w, l->dim, p); /* 0 without an equation */
+  }
+}
+
 /* The last layer of an odd periodic axis and the first are neighbours of one colour, moved at once without seeing each
  * other; the last one moves once more, so that it comes after all others of its colour as Gauss-Seidel has it. */
 static void sweep_seams(const cf_coupled *l, const int colour) {
-  const view w = view_of(l, 1);
-  for (int a = 0; a < l->dim; ++a) {
-    if (!l->periodic[a] || l->box.n[a] % 2 == 0) continue;
-    cf_coupled_wrap(l, l->e);
-    int low[3] = {0, 0, 0}, at[3];
-    low[a] = l->box.n[a] - 1;
-    for (at[2] = low[2]; at[2] < (a == 2 ? low[2] + 1 : l->box.n[2]); ++at[2])
-      for (at[1] = low[1]; at[1] < (a == 1 ? low[1] + 1 : l->box.n[1]); ++at[1])
-        for (at[0] = low[0]; at[0] < l->box.n[0]; ++at[0]) {
-          const ptrdiff_t p = cf_box_at(&l->box, at[0], at[1], at[2]);
-          if (((at[0] + at[1] + at[2] + colour) & 1) == 0 && cf_coupled_has(l, p))
-            w.e[p] = relaxed(&w, l->dim, p);
-        }
-  }
+  for (int a = 0; a < l->dim; ++a) sweep_seam(l, a, colour, false);
 }
 
 static void half_sweep(const cf_coupled *l, const float omega, const int colour) {
   cf_coupled_wrap(l, l->e);
-  sweep(l, l->is_gentle ? gentle_row_by_dim : half_row_by_dim, omega, colour);
+  sweep(l, l->is_gentle ? gentle_row_by_dim : half_row_by_dim, omega, colour, l->box.n);
   sweep_seams(l, colour);
 }
 
-void cf_coupled_smooth_first(const cf_coupled *l, const float omega, const int band) {
-  sweep(l, first_row_by_dim, omega, 0);
-  sweep_seams(l, 0);
-  half_sweep(l, omega, 1);
-  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band);
+/* The same in the opposite order: the last layers first, then all others. */
+static void half_sweep_back(const cf_coupled *l, const float omega, const int colour) {
+  int end[3] = {l->box.n[0], l->box.n[1], l->box.n[2]};
+  for (int a = l->dim - 1; a >= 0; --a) {
+    sweep_seam(l, a, colour, true);
+    end[a] -= has_odd_seam(l, a);
+  }
+  cf_coupled_wrap(l, l->e);
+  sweep(l, l->is_gentle ? gentle_row_by_dim : half_row_by_dim, omega, colour, end);
 }
 
-void cf_coupled_smooth(const cf_coupled *l, const float omega, const int band, const int sweeps,
-                       const int first) {
-  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band);
-  for (int v = 0; v < 2 * sweeps; ++v) half_sweep(l, omega, (v + first) % 2);
+void cf_coupled_smooth_first(const cf_coupled *l, const float omega, const int band) {
+  sweep(l, first_row_by_dim, omega, 0, l->box.n);
+  sweep_seams(l, 0);
+  half_sweep(l, omega, 1);
+  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band, false);
+}
+
+void cf_coupled_smooth(const cf_coupled *l, const float omega, const int band, const int sweeps) {
+  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band, false);
+  for (int v = 0; v < 2 * sweeps; ++v) half_sweep(l, omega, v % 2);
+}
+
+void cf_coupled_smooth_back(const cf_coupled *l, const float omega, const int band) {
+  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band, true);
+  half_sweep_back(l, omega, 1);
+  half_sweep_back(l, omega, 0);
 }
 
 void cf_coupled_form_rest(const cf_coupled *l) {
   cf_coupled_wrap(l, l->e);
-  sweep(l, residual_row_by_dim, 1, 0);
+  sweep(l, residual_row_by_dim, 1, 0, l->box.n);
 }

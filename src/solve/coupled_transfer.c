@@ -103,6 +103,16 @@ CF_KERNEL void spread_single(const int dim, const int n, const spread *s, const 
   for (int i = 0; i < n; ++i) w.e[i] += interpolated(dim, &w, i, i, 0);
 }
 
+/* The transpose of the sums of restriction. */
+CF_CLONES static void copy_pairs(const int n, const float *own, float *e) {
+  for (int i = 0; i < n; ++i) e[i] += own[i / 2];
+}
+
+CF_CLONES static void copy_single(const int n, const float *own, float *e) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) e[i] += own[i];
+}
+
 CF_CLONED(spread_pairs, const spread *, const int)
 CF_CLONED(spread_single, const spread *, const int)
 
@@ -116,6 +126,19 @@ CF_CLONES static void keep_held_row(const int n, const float *r, const float *in
 /* The coarse neighbour of fine index i on its side: -1, 1, or 0 where the axis is not coarsened. */
 static int side_of(const cf_coupled *l, const int a, const int i) {
   return !l->coarsened[a] ? 0 : i % 2 == 0 ? -1 : 1;
+}
+
+void cf_coupled_prolong_back(const cf_coupled *coarse, const cf_coupled *l) {
+  correct_odds(coarse, l);
+  CF_PARALLEL_COUPLED (l, v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run) {
+        const float *own = coarse->e + cf_box_at(&coarse->box, run->low >> l->coarsened[0],
+                                                 j >> l->coarsened[1], k >> l->coarsened[2]);
+        float *e = l->e + cf_box_at(&l->box, run->low, j, k);
+        (l->coarsened[0] ? copy_pairs : copy_single)(run->high - run->low, own, e);
+      }
+  for (ptrdiff_t v = 0; v < l->odds; ++v) l->e[l->odd_cell[v]] = l->odd_value[v];
 }
 
 void cf_coupled_prolong(const cf_coupled *coarse, const cf_coupled *l) {

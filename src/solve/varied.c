@@ -385,21 +385,47 @@ void cf_varied_add_held(const cf_varied *v, const cf_cell b) {
 
 /* --- the cycle ---------------------------------------------------------------------------------------- */
 
-void cf_varied_cycle(const cf_varied *v, const int at) {
+static void solve_last(const cf_varied *v, const int at) {
   const cf_coupled *l = &v->level[at];
-  if (at == v->depth - 1) {
-    if (is_eliminated(v)) {
-      cf_band_solve(&v->band, l);
-    } else {
-      cf_coupled_smooth_first(l, 1, 0);
-      cf_coupled_smooth(l, 1, 0, at == 0 ? 1 : LAST_SWEEPS, 0);
-    }
+  if (is_eliminated(v)) {
+    cf_band_solve(&v->band, l);
     return;
   }
-  const float omega = v->careful ? 1 : OMEGA;
-  cf_coupled_smooth_first(l, omega, v->band_sweeps);
+  cf_coupled_smooth_first(l, 1, 0);
+  if (v->careful)
+    cf_coupled_smooth_back(l, 1, 0);
+  else
+    cf_coupled_smooth(l, 1, 0, at == 0 ? 1 : LAST_SWEEPS);
+}
+
+/* Smoothing in opposite orders and transfers that are each other's transposes: with elimination, or few half sweeps, at
+ * the bottom this is symmetric and positive definite, however wrong coarse couplings are. */
+static void careful_cycle(const cf_varied *v, const int at) {
+  const cf_coupled *l = &v->level[at];
+  if (at == v->depth - 1) {
+    solve_last(v, at);
+    return;
+  }
+  cf_coupled_smooth_first(l, 1, v->band_sweeps);
+  cf_coupled_restrict(l, &v->level[at + 1]);
+  careful_cycle(v, at + 1);
+  cf_coupled_prolong_back(&v->level[at + 1], l);
+  cf_coupled_smooth_back(l, 1, v->band_sweeps);
+}
+
+void cf_varied_cycle(const cf_varied *v, const int at) {
+  const cf_coupled *l = &v->level[at];
+  if (v->careful) {
+    careful_cycle(v, at);
+    return;
+  }
+  if (at == v->depth - 1) {
+    solve_last(v, at);
+    return;
+  }
+  cf_coupled_smooth_first(l, OMEGA, v->band_sweeps);
   cf_coupled_restrict(l, &v->level[at + 1]);
   cf_varied_cycle(v, at + 1);
   cf_coupled_prolong(&v->level[at + 1], l);
-  cf_coupled_smooth(l, omega, v->band_sweeps, at == 0 || v->careful ? 1 : COARSE_SWEEPS, v->careful ? 1 : 0);
+  cf_coupled_smooth(l, OMEGA, v->band_sweeps, at == 0 ? 1 : COARSE_SWEEPS);
 }

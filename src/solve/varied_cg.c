@@ -25,13 +25,13 @@
 #define BAND_SWEEPS 2
 /* So many iterations are far more than any equation should need: then the cycle becomes symmetric, with which conjugate
  * gradients cannot stall. */
-#define PATIENCE 40
+#define PATIENCE 25
 /* One start gains so much at most: then how large x has become, and its rounding, is looked at anew. */
 #define START_GAIN (1024 * CF_REAL_EPSILON)
 /* A residual that is round-off passes for convergence up to the root of this (5e-7; in single precision 1e-2), not
  * beyond. */
 #define ROUNDING_PASSES (1024 * CF_REAL_EPSILON)
-/* A start that gains little ends so many times above the floor at most (in squares) where rounding is the reason. */
+/* What is left may be so many times the floor (in squares) where rounding is the reason. */
 #define NEAR_ROUNDING 16
 
 /* --- the iteration ------------------------------------------------------------------------------------ */
@@ -101,7 +101,7 @@ static void approach(cf_varied *v, const cf_cell b, const double enough, const i
       cf_varied_copy(v, v->best, x);
       *s = cf_varied_form(v, x, b);
     }
-    if (stalled && (v->careful || s->first <= NEAR_ROUNDING * floor)) return;
+    if (stalled && v->careful) return;
     v->careful = v->careful || stalled || *iterations - begun >= PATIENCE;
   }
 }

@@ -177,6 +177,7 @@ static void random_regions_match_elimination(void **state) {
   }
   print_message("%d systems compared, at most %d iterations to 1e-13\n", compared, most);
   assert_true(compared > 700);
+  assert_true(most <= 100); /* seams of odd axes and couplings a thousand times apart, to the last digit */
 }
 
 /* --- obstacles -------------------------------------------------------------------------------------------- */
@@ -251,7 +252,7 @@ static void a_ball_costs_little(void **state) {
       scene_begin(&s, dim, dim == 2 ? 192 : 48, 48);
       const cf_shape ball = cf_shape_sphere((double[]){0.47, 0.53, dim == 3 ? 0.5 : 0}, 0.23);
       OK(cf_region_add(s.region, &ball, NULL, 0, (cf_cell_kind)kind, NULL));
-      for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "ball"), 10);
+      for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "ball"), 8);
       scene_end(&s);
     }
 }
@@ -295,8 +296,8 @@ static void a_porous_block_takes_few_iterations(void **state) {
             s.region->kind[cf_box_at(&s.g.box, i + c % grain, j + c / grain % grain, k + c / grain / grain)] =
                 CF_CELL_WALL;
         }
-    /* grains of a single cell leave necks that no coarse cell knows of: 12 mostly, but 20 have been seen */
-    for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "porous"), grain == 1 ? 24 : 15);
+    /* grains of a single cell leave necks that no coarse cell knows of: 12 mostly, but 20 where alpha is small and pockets many */
+    for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "porous"), grain == 1 ? 20 : 15);
     scene_end(&s);
   }
 }
