@@ -16,8 +16,7 @@ static void shape(cf_split *s, const cf_level *plain) {
   s->half[1] = s->n[0] / 2;
   s->width = round_up(s->half[0], CF_SPLIT_LANES);
   s->odd = s->width + CF_SPLIT_LANES;
-  s->row = s->odd + round_up(s->half[1] + 1, CF_SPLIT_LANES);
-  if (s->row < s->odd + s->width) s->row = s->odd + s->width;
+  s->row = s->odd + s->width;
   s->plane = s->row * (s->n[1] + 2);
   const int depth = s->dim == 3 ? s->n[2] + 2 : 1;
   s->first = CF_SPLIT_LANES + s->row + (s->dim == 3 ? s->plane : 0);
@@ -159,7 +158,7 @@ void cf_split_set(cf_split *s, const double alpha, const double beta, const doub
 /* --- seams -------------------------------------------------------------------------------------------- */
 
 static void copy_row(const cf_split *s, const float *from, float *to) {
-  for (ptrdiff_t i = -1; i < s->row; ++i) to[i] = from[i];
+  for (ptrdiff_t i = 0; i < s->row; ++i) to[i] = from[i];
 }
 
 /* x first, so that the copied rows and planes hold their corners. */
