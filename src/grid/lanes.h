@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Vectors of fixed length for sums along a row. A sum kept in so many lanes has the same bits on every machine, but left
- * to itself the compiler keeps an array of lanes in memory, or takes it apart; these stay in registers, however many of
- * them the machine needs for one. They are for local variables: as arguments they would depend on the machine.
+ * Vectors of fixed length, for sums along a row and for weaving two rows into one. A sum kept in so many lanes has the
+ * same bits on every machine, but left to itself the compiler keeps an array of lanes in memory, or takes it apart; these
+ * stay in registers, however many of them the machine needs for one. They are for local variables: as arguments they would
+ * depend on the machine.
  */
 #ifndef CF_GRID_LANES_H
 #define CF_GRID_LANES_H
@@ -20,10 +21,17 @@ typedef float cf_sixteen_floats __attribute__((vector_size(64), aligned(4), may_
 #define CF_EIGHT_OF_DOUBLES(p) (*(const cf_eight_doubles *)(p))
 #define CF_EIGHT_OF_FLOATS(p)  __builtin_convertvector(*(const cf_eight_floats *)(p), cf_eight)
 #define CF_SIXTEEN_OF(p)       (*(const cf_sixteen_floats *)(p))
+/* As many of cf_real. */
 #ifdef CF_SINGLE
-#define CF_EIGHT_OF CF_EIGHT_OF_FLOATS
+#define CF_EIGHT_OF         CF_EIGHT_OF_FLOATS
+#define CF_EIGHT_INTO(p, v) (*(cf_eight_floats *)(p) = __builtin_convertvector(v, cf_eight_floats))
 #else
-#define CF_EIGHT_OF CF_EIGHT_OF_DOUBLES
+#define CF_EIGHT_OF         CF_EIGHT_OF_DOUBLES
+#define CF_EIGHT_INTO(p, v) (*(cf_eight_doubles *)(p) = (v))
 #endif
+
+/* a0 b0 a1 b1 ...: the first half of them, and the second. */
+#define CF_EIGHT_WOVEN_LOW(a, b)  __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11)
+#define CF_EIGHT_WOVEN_HIGH(a, b) __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15)
 
 #endif

@@ -100,10 +100,12 @@ static bool is_suitable(const cf_box_solver *f, const cf_level *finest, const cf
          cf_level_stiffness(coarsest) <= (f->depth == 1 ? CF_BOX_SWEEPS_ENOUGH : CF_STIFF_ENOUGH);
 }
 
-/* 1 + (share of diffusion in the diagonal)^2 / 5, a little less on the finest level, was best at 1e-6. */
+/* 1 + (share of diffusion in the diagonal)^2 / 5; on the finest level so much of what is above 1, for the half sweeps
+ * before and after the coarse correction. The first one after it starts anew (stages.h). */
 static void choose_omega(const cf_level *l, const bool finest, const bool half_sweeps_only, double omega[4]) {
+  static const double on_finest[4] = {1.2, 1.2, 0, 0.85};
   const double over = (double)cf_level_relaxation(l) - 1;
-  for (int v = 0; v < 4; ++v) omega[v] = half_sweeps_only ? 1 : 1 + (finest ? CF_BOX_FINEST_OVER : 1) * over;
+  for (int v = 0; v < 4; ++v) omega[v] = half_sweeps_only ? 1 : 1 + (finest ? on_finest[v] : 1) * over;
 }
 
 bool cf_box_solver_set(cf_box_solver *f, const cf_helmholtz *A) {

@@ -55,7 +55,7 @@ void cf_stage_run(const cf_pass *p, const int number, const cf_strip *t) {
       cf_stage_restrict(p, t);
       break;
     case CF_PASS_PROLONG:
-      cf_stage_prolong(p, t);
+      cf_stage_prolong(p, t, omega_of(p, number + 1) == 1);
       break;
     case CF_PASS_CLEAR:
       cf_stage_clear(s, t);

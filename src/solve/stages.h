@@ -11,7 +11,8 @@
  *     LAST         a black half sweep that leaves the residual behind in r
  *     UPDATE       red: r -= A' e; all: x += gain e, and the sum of r^2; then FIRST on the new r
  *     RESTRICT     the residual of SECOND, averaged over the children of a coarse cell; FIRST on the coarse level
- *     PROLONG      e += interpolated correction of the coarse level
+ *     PROLONG      e += interpolated correction of the coarse level; on black cells alone if the red half sweep that
+ *                  follows has omega = 1, and so makes e of red cells from that of black ones, whatever it was
  *
  * The black half after SECOND or LAST needs no stencil for its residual: the half sweep took it out but for what
  * over-relaxation did, (1 - omega) of what was there, since its neighbours, red ones all, have not changed.

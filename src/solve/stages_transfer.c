@@ -8,10 +8,10 @@
 
 /* --- to the coarse level ------------------------------------------------------------------------------ */
 
-/* What a fine row leaves to its coarse row: sum[m] += weight (share of even cell m times its residual, and the
+/* What a fine row leaves to its coarse row: sum[m] (+)= weight (share of even cell m times its residual, and the
  * same of odd cell m). form 0: uneven, 1: even couplings, 2: stencils for both colours. */
-CF_KERNEL void gather(const int dim, const int form, const cf_split *s, const cf_strip *t, const int j,
-                      const int k, const float weight, float *sum) {
+CF_KERNEL void gather(const int dim, const int form, const bool fresh, const cf_split *s, const cf_strip *t,
+                      const int j, const int k, const float weight, float *sum) {
   const cf_half red = cf_half_of(dim, s, j, k, 0), black = cf_half_of(dim, s, j, k, 1);
   const float *share_red = s->share + (red.parity ? s->odd : 0);
   const float *share_black = s->share + (red.parity ? 0 : s->odd);
@@ -25,7 +25,8 @@ CF_KERNEL void gather(const int dim, const int form, const cf_split *s, const cf
       from_red = left_red * red.r[m] + cf_around(dim, form, &red, m);
       from_black = left_black * (black.diagonal[m] * black.e[m]);
     }
-    sum[m] += weight * (share_red[m] * from_red + share_black[m] * from_black);
+    const float part = weight * (share_red[m] * from_red + share_black[m] * from_black);
+    sum[m] = fresh ? part : sum[m] + part;
   }
 }
 
@@ -64,11 +65,15 @@ CF_KERNEL void restrict_row(const int dim, const int form, const cf_pass *p, con
   const cf_pairing *y = &s->plain->pairing[1], *z = &s->plain->pairing[2];
   const bool ends = t->to == s->width;
   float *sum = t->scratch;
-  memset(sum + t->from, 0, (size_t)(t->to - t->from + 2 * CF_SPLIT_LANES) * sizeof(float));
+  memset(sum + t->to, 0, 2 * CF_SPLIT_LANES * sizeof(float));
   for (int child_k = k0; child_k <= t->k; ++child_k)
-    for (int child_j = j0; child_j <= j; ++child_j)
-      gather(dim, form, s, t, child_j, child_k,
-             (float)(y->share[child_j] * (dim == 3 ? z->share[child_k] : 1)), sum);
+    for (int child_j = j0; child_j <= j; ++child_j) {
+      const float weight = (float)(y->share[child_j] * (dim == 3 ? z->share[child_k] : 1));
+      if (child_k == k0 && child_j == j0)
+        gather(dim, form, true, s, t, child_j, child_k, weight, sum);
+      else
+        gather(dim, form, false, s, t, child_j, child_k, weight, sum);
+    }
   /* The last cell of a triple stands alone at the end. */
   if (ends && s->n[0] > 2 * c->n[0]) sum[c->n[0] - 1] += sum[c->n[0]], sum[c->n[0]] = 0;
   cf_strip coarse = {.j = y->parent[j], .k = dim == 3 ? z->parent[t->k] : 0, .from = t->from / 2};
@@ -106,17 +111,17 @@ void cf_stage_restrict(const cf_pass *p, const cf_strip *t) {
 
 /* --- from the coarse level ---------------------------------------------------------------------------- */
 
-/* A coarse row mixed of up to four, in natural order from cell 2 q0 on. */
+/* A coarse row mixed of up to four, in natural order from cell 2 q0 on; whole vectors, which may go beyond the row. */
 typedef struct mixture {
   const float *row[4];
   float weight[4];
 } mixture;
 
-CF_KERNEL void mix(const int rows, const mixture *x, const int pairs, const ptrdiff_t odd, float *line) {
+CF_KERNEL void mix(const int rows, const mixture *x, const int vectors, const ptrdiff_t odd, float *line) {
   const float a = x->weight[0], b = x->weight[1], c = x->weight[2], d = x->weight[3];
   const float *p = x->row[0], *q = x->row[1], *r = x->row[2], *s = x->row[3];
   CF_ROW_LOOP
-  for (int i = 0; i < pairs; ++i) {
+  for (int i = 0; i < vectors * CF_SPLIT_LANES; ++i) {
     float even = a * p[i] + b * q[i], other = a * p[odd + i] + b * q[odd + i];
     if (rows == 4) {
       even += c * r[i] + d * s[i];
@@ -127,21 +132,21 @@ CF_KERNEL void mix(const int rows, const mixture *x, const int pairs, const ptrd
   }
 }
 
-/* e += own line[m] + away line[m -+ 1] for the even and odd cells 2m, 2m+1. */
-CF_KERNEL void spread(const cf_split *s, const cf_strip *t, const float *line, float *e) {
-  const float *own = s->own, *away = s->away;
-  const ptrdiff_t odd = s->odd;
-  CF_FOR_PIECE(m, t) {
-    e[m] += own[m] * line[m] + away[m] * line[m - 1];
-    e[odd + m] += own[odd + m] * line[m] + away[odd + m] * line[m + 1];
-  }
+/* e += own line[m] + away line[m -+ 1] for the cells of one half, 2m or 2m + 1. */
+CF_KERNEL void spread(const cf_half *h, const cf_split *s, const cf_strip *t, const float *line) {
+  const ptrdiff_t off = h->parity ? s->odd : 0;
+  const float *own = s->own + off, *away = s->away + off, *next = line + (h->parity ? 1 : -1);
+  float *e = h->e;
+  CF_FOR_PIECE(m, t) e[m] += own[m] * line[m] + away[m] * next[m];
 }
 
-/* In y and z first (a fine row has up to four coarse ones: parent and other along either axis), then along x. */
-CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t) {
+/* In y and z first (a fine row has up to four coarse ones: parent and other along either axis), then along x. Red cells
+ * are left alone where the half sweep that follows does not ask for them. */
+CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t, const bool black_alone) {
   const cf_split *s = p->at, *c = p->coarse;
   const cf_pairing *y = &s->plain->pairing[1], *z = &s->plain->pairing[2];
   const int q0 = t->from / 2 - 1, pairs = (t->to - t->from) / 2 + 2;
+  const int vectors = (pairs + CF_SPLIT_LANES - 1) / CF_SPLIT_LANES;
   float *line = t->scratch;
   CF_FOR_ROWS(j, t) {
     mixture x;
@@ -155,13 +160,19 @@ CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t) 
       x.row[v] = c->e + row * c->row + plane * c->plane + q0;
       x.weight[v] = (float)(y->weight[v % 2][j] * (dim == 2 ? 1 : z->weight[v / 2][t->k]));
     }
-    mix(2 * (dim - 1), &x, pairs, c->odd, line);
-    spread(s, t, line - 2 * q0, s->e + j * s->row + t->k * s->plane);
+    mix(2 * (dim - 1), &x, vectors, c->odd, line);
+    const cf_half red = cf_half_of(dim, s, j, t->k, 0), black = cf_half_of(dim, s, j, t->k, 1);
+    if (!black_alone) spread(&red, s, t, line - 2 * q0);
+    spread(&black, s, t, line - 2 * q0);
   }
 }
-CF_CLONES static void prolong_rows_2d(const cf_pass *p, const cf_strip *t) { prolong_rows(2, p, t); }
-CF_CLONES static void prolong_rows_3d(const cf_pass *p, const cf_strip *t) { prolong_rows(3, p, t); }
+CF_CLONES static void prolong_rows_2d(const cf_pass *p, const cf_strip *t, const bool black_alone) {
+  prolong_rows(2, p, t, black_alone);
+}
+CF_CLONES static void prolong_rows_3d(const cf_pass *p, const cf_strip *t, const bool black_alone) {
+  prolong_rows(3, p, t, black_alone);
+}
 
-void cf_stage_prolong(const cf_pass *p, const cf_strip *t) {
-  (p->at->dim == 3 ? prolong_rows_3d : prolong_rows_2d)(p, t);
+void cf_stage_prolong(const cf_pass *p, const cf_strip *t, const bool black_alone) {
+  (p->at->dim == 3 ? prolong_rows_3d : prolong_rows_2d)(p, t, black_alone);
 }
