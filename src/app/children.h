@@ -12,8 +12,8 @@
 #include "base/status.h"
 
 typedef struct cf_child {
-  char **argv; /* of the program, argv[0] included; NULL at its end */
-  int code; /* exit code (of a run that was stopped, if SIGTERM ended it); 128 + another signal; -1 before that */
+  char **argv;  /* of the program, argv[0] included; NULL at its end */
+  int code;     /* exit code (that of a stopped run, if SIGTERM ended it); 128 + another signal; -1 before */
   long process; /* while it runs */
   FILE *said;   /* what it says on stderr; shown if it fails */
 } cf_child;
