@@ -197,6 +197,13 @@ static double limit_of(const double s, const double tau, const double F, const d
   return pair_limit((F * stiff + more) / s + 1 / tau, (stiff + more) / (s * tau));
 }
 
+/* What freezes warms what freezes, which then freezes slower: T_t = -chi/tau_eta T at the steepest of psi, in the middle of
+ * the interface. This is chi, of the part that acts at once. */
+static double release_rate(const cf_phase_params *q) {
+  const double now = cf_phase_has_memory(q) ? q->f_eta : 1;
+  return now * q->latent * (q->karma_rappel ? q->coupling / 2 : q->alpha * q->gamma / (4 * acos(-1)));
+}
+
 cf_phase_limits cf_phase_limits_of(const cf_phase *p) {
   const cf_phase_params *q = &p->p;
   const int dim = p->grid->box.dim;
@@ -210,7 +217,7 @@ cf_phase_limits cf_phase_limits_of(const cf_phase *p) {
   else
     l.phase = limit_of(s, q->tau_1, q->f_eta, spread + pull, 0);
   l.heat = limit_of(1, q->tau_2, q->f_t, 4 * dim * q->D / h2, 0);
-  l.both = fmin(l.phase, l.heat);
+  l.both = fmin(l.phase, limit_of(1, q->tau_2, q->f_t, 4 * dim * q->D / h2, release_rate(q) / s));
   l.reaction = q->form == CF_PHASE_STABLE && cf_phase_has_memory(q)
                    ? fmax(q->tau_eta, sqrt(q->tau_eta * q->tau_1))
                    : q->tau_eta;

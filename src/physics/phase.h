@@ -95,7 +95,8 @@ void cf_phase_destroy(cf_phase *p);
  * not, form and anisotropy's folds must stay. CF_BAD_ARGUMENT. */
 cf_status cf_phase_set(cf_phase *p, const cf_phase_params *params);
 
-/* The longest stable explicit step with the present numbers, s: of the phase, and of the heat beside it. */
+/* The longest stable explicit step with the present numbers, s: of the phase, of the heat beside it, and of both with the
+ * heat that freezing releases. */
 typedef struct cf_phase_limits {
   double phase, heat, both;
   double reaction; /* tau_eta, or what stands for it: the time in which the interface acts, for accuracy */

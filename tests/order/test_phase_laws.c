@@ -201,6 +201,24 @@ static void euler_is_of_first_order_and_the_default_of_third(void **state) {
   }
 }
 
+/* Much latent heat, in cells so large that diffusion alone would allow steps three times as long (and T of .9): nothing gets warmer than
+ * the melting point, but for what the interface's width does. */
+static void steps_at_their_limit_do_not_overheat_the_interface(void **state) {
+  (void)state;
+  cf_phase_params q = crystal_params();
+  crystal c;
+  q.latent = 8;
+  crystal_make(&c, 2, (int[3]){64, 64, 1}, 0.03, &q, NULL, false, 1);
+  crystal_ball(&c, 0.3, q.width, -1);
+  const double dt = 0.95 * cf_phase_limits_of(c.p).both;
+  double most = -1;
+  crystal_grow(&c, dt, (int)(0.03 / dt));
+  CRYSTAL_CELLS(&c, i, j, k, p) most = fmax(most, (double)c.y.T.at[p]);
+  print_message("steps of %.3g s: T up to %.4f\n", dt, most);
+  BELOW(most, 0.04);
+  crystal_free(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(ball_shrinks_by_its_curvature),
@@ -209,6 +227,7 @@ int main(void) {
       cmocka_unit_test(heat_is_kept_to_round_off),
       cmocka_unit_test(implicit_and_explicit_steps_agree_as_dt_goes_to_zero),
       cmocka_unit_test(euler_is_of_first_order_and_the_default_of_third),
+      cmocka_unit_test(steps_at_their_limit_do_not_overheat_the_interface),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
