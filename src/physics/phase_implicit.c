@@ -51,15 +51,20 @@ typedef struct stage {
   cf_cell eta, r;            /* eta*, r* */
 } stage;
 
+CF_CLONES static void rate_row(const int n, const double tau, const cf_real *A2, const cf_real *mobility,
+                               cf_real *rate) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    const double m = mobility != NULL ? (double)mobility[i] : 1;
+    rate[i] = (cf_real)(tau * (A2 != NULL ? (double)A2[i] : 1) / CF_MAX(m, LEAST_MOBILITY));
+  }
+}
+
 /* tau_eta of the cells of a row, with mobility and A^2 in it. */
 static void tau_row(const cf_phase *p, cf_phase_rows *rows, const cf_real *eta, const ptrdiff_t start) {
-  const int n = p->grid->box.n[0];
-  if (p->p.karma_rappel) cf_phase_A2_row(p, n, eta, start, rows->A2);
-  for (int i = 0; i < n; ++i) {
-    const double A2 = p->p.karma_rappel ? (double)rows->A2[i] : 1;
-    const double mobility = p->places.mobility.at != NULL ? (double)p->places.mobility.at[start + i] : 1;
-    rows->rate[i] = (cf_real)(p->p.tau_eta * A2 / CF_MAX(mobility, LEAST_MOBILITY));
-  }
+  if (p->p.karma_rappel) cf_phase_A2_row(p, p->grid->box.n[0], eta, start, rows->A2);
+  rate_row(p->grid->box.n[0], p->p.tau_eta, p->p.karma_rappel ? rows->A2 : NULL,
+           p->places.mobility.at != NULL ? p->places.mobility.at + start : NULL, rows->rate);
 }
 
 typedef struct equation {
@@ -87,6 +92,11 @@ CF_KERNEL void equation_row(const int dim, const int n, const equation *q, const
 }
 CF_CLONED(equation_row, const equation *, const ptrdiff_t)
 
+CF_CLONES static void add_row(const int n, const cf_real factor, const cf_real *from, cf_real *to) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) to[i] += factor * from[i];
+}
+
 static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start, const ptrdiff_t r,
                   void *context) {
   const stage *s = context;
@@ -106,8 +116,7 @@ static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start,
     q.star2[a] = (cf_real)(star * star);
   }
   equation_row_by_dim(box->dim, box->n[0], &q, start);
-  if (s->r.at == NULL) return;
-  for (int i = 0; i < box->n[0]; ++i) p->b.at[start + i] += (cf_real)s->m * s->r.at[start + i];
+  if (s->r.at != NULL) add_row(box->n[0], (cf_real)s->m, s->r.at + start, p->b.at + start);
 }
 
 static void fill_row(const int n, const cf_real value, cf_real *to) {

@@ -180,7 +180,10 @@ void cf_varied_form_row(const cf_varied *v, const int j, const int k, const ptrd
     o.y = v->r.at + p;
     remain_row(l->dim, cf_varied_form_of(v), n, &o, 0);
     dot_run(n, v->r.at + p, v->r.at + p, sums.sum[0]);
-    side_run(n, &o, sums.sum[1]);
+    if (v->sweeps) /* every cell has an equation */
+      dot_run(n, o.b, o.b, sums.sum[1]);
+    else
+      side_run(n, &o, sums.sum[1]);
     if (count > 2) size_run(n, &o, sums.sum[2]);
   }
   keep_row(v, count, j, k, &sums);
