@@ -127,14 +127,16 @@ static void points_refused(const cf_points *p, const char *name, const int compo
 static void particles_without_sense_are_refused(void **state) {
   const output_case *c = *state;
   const cf_path path = case_path(c, "particles_000004.vtkhdf");
-  const hsize_t flat[2] = {7, 2}, block[3] = {7, 2, 2};
+  const hsize_t flat[2] = {7, 2}, block[3] = {7, 2, 2}, bomb[2] = {(hsize_t)1 << 40, 3};
   cf_points p;
   hid_t file = edit(path.text);
   set_array(file, "/VTKHDF/PointData/block", 3, block);
+  set_array(file, "/VTKHDF/PointData/bomb", 2, bomb);
   H5Fclose(file);
   OK(cf_points_read(&p, path.text));
   points_refused(&p, "age", 3, "age has 7 times 1 numbers, expected 7 times 3");
   points_refused(&p, "block", 1, "block has a shape that makes no sense");
+  points_refused(&p, "bomb", 3, "bomb says that it is larger than the file can hold");
   file = edit(path.text);
   assert_true(H5Ldelete(file, "/VTKHDF/PointData", H5P_DEFAULT) >= 0);
   H5Fclose(file);
