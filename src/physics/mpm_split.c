@@ -19,29 +19,40 @@
 
 #define PART 4096
 
+/* The square of the length of side a of eight particles. */
+CF_SMALL void length_of(const int dim, const cf_lanes *F, const cf_lanes *side, const int a,
+                        cf_lanes *square) {
+  *square = F[a] * F[a];
+  CF_SMALL_LOOP
+  for (int r = 1; r < dim; ++r) *square += F[r * dim + a] * F[r * dim + a];
+  *square *= side[a] * side[a];
+}
+
 /* key: 0, or 1 + the axis to cut across, of particles from ... to - 1. Returns how many are not 0. */
 CF_KERNEL int64_t mark_part(const int dim, const cf_mpm *m, const int64_t from, const int64_t to,
                             const cf_real most) {
   int64_t found = 0;
   for (int64_t i = from; i < to; i += CF_WIDE) {
     const int n = to - i < CF_WIDE ? (int)(to - i) : CF_WIDE;
-    cf_lanes F[9], side[3];
-    cf_real longest[CF_WIDE] = {0};
-    int axis[CF_WIDE] = {0};
+    uint32_t *key = m->set->key + i;
+    cf_lanes F[9], side[3], square, longest = {0};
+    cf_real any = 0;
     cf_mpm_load(n, m, m->at.deformation, dim * dim, i, F);
     cf_mpm_load(n, m, m->at.side, dim, i, side);
+    CF_SMALL_LOOP
     for (int a = 0; a < dim; ++a) {
-      cf_lanes square = F[a] * F[a];
-      for (int r = 1; r < dim; ++r) square += F[r * dim + a] * F[r * dim + a];
-      square *= side[a] * side[a];
-      for (int l = 0; l < CF_WIDE; ++l)
-        if (square[l] > longest[l]) longest[l] = square[l], axis[l] = a;
+      length_of(dim, F, side, a, &square);
+      for (int l = 0; l < CF_WIDE; ++l) longest[l] = CF_MAX(longest[l], square[l]);
     }
-    for (int l = 0; l < n; ++l) {
-      const bool long_one = longest[l] > most * most;
-      m->set->key[i + l] = long_one ? (uint32_t)axis[l] + 1 : 0;
-      found += long_one;
+    memset(key, 0, sizeof *key * (size_t)n);
+    for (int l = 0; l < CF_WIDE; ++l) any = CF_MAX(any, longest[l]);
+    if (!(any > most * most)) continue; /* nearly always */
+    for (int a = dim - 1; a >= 0; --a) {
+      length_of(dim, F, side, a, &square);
+      for (int l = 0; l < n; ++l)
+        if (longest[l] > most * most && square[l] >= longest[l]) key[l] = (uint32_t)a + 1;
     }
+    for (int l = 0; l < n; ++l) found += key[l] != 0;
   }
   return found;
 }
