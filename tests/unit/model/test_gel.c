@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Model gel as a whole: what turns takes its saturation along, what is dropped comes to rest and is pressed as much as
- * its weight says, momenta are kept while water moves.
+ * its weight says, momenta are kept while water moves, and obstacles are met whatever says where they are.
  */
 #include <math.h>
 
@@ -199,11 +199,87 @@ static void blocks_in_contact_conduct_one_behind_the_other(void **state) {
   BELOW(fabs(fine - exact), 0.7 * fabs(coarse - exact));
 }
 
+/* --- obstacles --------------------------------------------------------------------------------------------- */
+
+/* numpy's file of distances from a ball, 64 x 64 of them. */
+static void write_ball(const char *path) {
+  const char *text = "{'descr': '<f8', 'fortran_order': False, 'shape': (64, 64), }";
+  char head[128];
+  memset(head, ' ', sizeof head);
+  memcpy(head, "\x93NUMPY\x01\x00\x76\x00", 10);
+  memcpy(head + 10, text, strlen(text));
+  head[127] = '\n';
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  fwrite(head, 1, sizeof head, file);
+  for (int j = 0; j < 64; ++j)
+    for (int i = 0; i < 64; ++i)
+      fwrite(&(double){hypot((i + 0.5) / 64 - 0.5, (j + 0.5) / 64 - 0.3) - 0.2}, sizeof(double), 1, file);
+  fclose(file);
+}
+
+/* A wet block falls on a ball, a little beside its middle. Where its particles are in the end, by id; the depth of the
+ * deepest of them in the ball; how many. */
+static int64_t fall_on(const char *obstacle, const char *contact, double (*place)[2], double *depth) {
+  char text[2048];
+  scene_run r;
+  snprintf(
+      text, sizeof text,
+      "cattaneo: 1\nmodel: gel\ndomain: {size: [1, 1], cells: [32, 32]}\ntime: {end: 0.6}\n"
+      "diffusion: {k: 0.01, tau: 0.2, f_t: 0.1}\nobstacles:\n  - {%s, contact: %s}\n"
+      "gel:\n  bodies:\n    - {shape: box, center: [0.52, 0.65], half: [0.2, 0.1], young: 100, swelling: 20, "
+      "saturation: \"x\"}\n  gravity: [0, -5]\n  damping: 1\n",
+      obstacle, contact);
+  scene_open(&r, "fall_on", text, 1);
+  OK(cf_sim_run(r.sim, INFINITY, NULL, NULL));
+  const cf_gel *g = gel_of(&r);
+  *depth = 0;
+  assert_true(g->set->count < SPINNING_MOST);
+  for (int64_t i = 0; i < g->set->count; ++i) {
+    double *x = place[g->set->id[i]];
+    for (int a = 0; a < 2; ++a) x[a] = (double)g->set->attribute[g->at.position].at[a][i];
+    *depth = fmax(*depth, 0.2 - hypot(x[0] - 0.5, x[1] - 0.3));
+  }
+  BELOW(fabs(scene_metric(&r, "error_water")), 1e-12);
+  const int64_t count = g->set->count;
+  scene_close(&r);
+  return count;
+}
+
+static double apart(const int64_t n, double (*a)[2], double (*b)[2]) {
+  double sum = 0;
+  for (int64_t i = 0; i < n; ++i) sum += pow(a[i][0] - b[i][0], 2) + pow(a[i][1] - b[i][1], 2);
+  return sqrt(sum / (double)n);
+}
+
+/* Sampled distances are met as the body they are of; a body that sticks ends elsewhere than one that slides. */
+static void gel_meets_distances_from_a_file_as_their_ball(void **state) {
+  (void)state;
+  static double ball[SPINNING_MOST][2], sampled[SPINNING_MOST][2], stuck[SPINNING_MOST][2];
+  const double h = 1.0 / 32;
+  double depth[3];
+  char path[1100], keys[1400];
+  snprintf(path, sizeof path, "%s/ball.npy", folder_fresh("gel_npy"));
+  write_ball(path);
+  snprintf(keys, sizeof keys, "shape: file, file: %s, spacing: 0.015625, origin: [0.0078125, 0.0078125]",
+           path);
+  const char *exact = "shape: ball, center: [0.5, 0.3], radius: 0.2";
+  const int64_t n = fall_on(exact, "separate", ball, &depth[0]);
+  assert_int_equal(fall_on(keys, "separate", sampled, &depth[1]), n);
+  assert_int_equal(fall_on(exact, "sticky", stuck, &depth[2]), n);
+  print_message("file: %.4f h apart, depths %.2f and %.2f h; sticky: %.2f h apart\n",
+                apart(n, ball, sampled) / h, depth[0] / h, depth[1] / h, apart(n, ball, stuck) / h);
+  BELOW(apart(n, ball, sampled), 0.1 * h);
+  for (int i = 0; i < 3; ++i) BELOW(depth[i], h);
+  assert_true(apart(n, ball, stuck) > 0.5 * h);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(saturation_of_a_spinning_gel_is_that_of_one_at_rest),
       cmocka_unit_test(bodies_apart_have_each_its_own_k),
       cmocka_unit_test(blocks_in_contact_conduct_one_behind_the_other),
+      cmocka_unit_test(gel_meets_distances_from_a_file_as_their_ball),
       cmocka_unit_test(dropped_gel_comes_to_rest_pressed_by_its_weight),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
