@@ -7,7 +7,7 @@ grow cattaneo40 scene.yaml $light
 grow fick40 scene.yaml $light $fick --set "title=Soft gel, Fick"
 grow cattaneo200 scene.yaml $light $stiff --set "title=Stiff gel, C-F"
 grow fick200 scene.yaml $light $stiff $fick --set "title=Stiff gel, Fick"
-"$program" render "$out/cattaneo40" "$out/fick40" "$out/cattaneo200" "$out/fick200" --frame 6 --size 800x560 -o "$out/four.png"
+"$program" render "$out/cattaneo40" "$out/fick40" "$out/cattaneo200" "$out/fick200" --frame 5 --size 800x560 -o "$out/four.png"
 show four.png 1600
 grow strip strip.yaml
 "$program" render "$out/strip" --frame 20 --size 1200x640 -o "$out/strip.png"
