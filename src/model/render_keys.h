@@ -54,7 +54,7 @@
   P(size, integers, CF_NONE, "", "2 of [16, 16384]",                                                        \
     "Width and height in pixels; left out: 1280 and 720, or with style field the shape of the plane")       \
   P(samples, integer, "16", "", "[1, 65536]", "Rays a pixel at most: noise falls with their root")          \
-  P(noise, number, "0.01", "", "[0, 1]",                                                                   \
+  P(noise, number, "0.01", "", "[0, 1]",                                                                    \
     "Where the noise is below that, in parts of white, a pixel takes no more rays; 0: all take all")        \
   P(range, numbers_or_auto, "auto", "", "2 of (-inf, inf)",                                                 \
     "Values at the ends of the colours, or of clear and densest; auto: of all frames that are shown")       \
