@@ -26,8 +26,14 @@ cf_style cf_style_find(const char *name) {
 
 cf_look cf_look_default(const cf_style style) {
   const double open = (double)NAN;
-  cf_look l = {
-      .style = style, .width = 1280, .height = 720, .samples = 16, .noise = 0.01, .threads = 1, .zoom = 1, .floor = true};
+  cf_look l = {.style = style,
+               .width = 1280,
+               .height = 720,
+               .samples = 16,
+               .noise = 0.01,
+               .threads = 1,
+               .zoom = 1,
+               .floor = true};
   double *const numbers[] = {&l.low,   &l.high,  &l.strength, &l.level,      &l.turn,       &l.rise,
                              &l.angle, &l.focus, &l.aperture, &l.light_turn, &l.light_rise, &l.light_spread};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) *numbers[i] = open;
