@@ -1,6 +1,6 @@
 # One crystal at print quality; Figs 11 and 13 as sheets.
 grow flake scene-full.yaml
-"$program" render "$out/flake" --frame 20 --size 1024x1024 --set render.camera.zoom=1.6 -o "$out/flake.png"
+"$program" render "$out/flake" --size 1024x1024 -o "$out/flake.png"
 spread fig-11 scene.yaml --grid phase.tau_1=1e-3,1e-4,1e-5 --grid diffusion.tau=1e-3,1e-4,1e-5
 spread fig-13 scene.yaml --grid phase.form=stable,paper --grid phase.tau_1=0.1,1e-2,1e-3
 for crystal in plate star column; do
