@@ -164,31 +164,10 @@ void cf_box_gather_odds(const cf_box_solver *f) {
   }
 }
 
-/* The constant of an island, which its residual is divided by its diagonal for; its cells follow each other. */
-static ptrdiff_t lift_island(const cf_box_solver *f, const ptrdiff_t first) {
-  const cf_coupled *l = &f->varied->level[0];
-  double residual = 0, fixed = 0;
-  ptrdiff_t end = first;
-  for (; end < l->odds && l->odd_island[end] == l->odd_island[first]; ++end) {
-    const ptrdiff_t p = l->odd_cell[end];
-    residual += (double)l->odd_value[end];
-    fixed += (double)l->free[p] + (double)l->held[p];
-  }
-  for (ptrdiff_t v = first; v < end; ++v) l->odd_value[v] = fixed > 0 ? (float)(residual / fixed) : 0;
-  return end;
-}
-
 void cf_box_spread_odds(const cf_box_solver *f) {
   const cf_coupled *l = &f->varied->level[0], *coarse = &f->varied->level[1];
   int at[3];
-  for (ptrdiff_t v = 0; v < l->odds;) {
-    if (l->odd_parent[v] == CF_NO_PARENT) {
-      v = lift_island(f, v);
-      continue;
-    }
-    l->odd_value[v] = coarse->e[l->odd_parent[v]];
-    ++v;
-  }
+  cf_coupled_lift_odds(coarse, l);
   for (ptrdiff_t v = 0; v < l->odds; ++v)
     f->level[0].e[split_place(&f->level[0], l->odd_cell[v], at)] += l->odd_value[v];
 }

@@ -87,6 +87,10 @@ void cf_coupled_restrict(const cf_coupled *l, const cf_coupled *coarse);
 /* e += interpolated coarse->e. */
 void cf_coupled_prolong(const cf_coupled *coarse, const cf_coupled *l);
 
+/* The correction of each cell that has another parent, from its rest in odd_value into odd_value: its parent's e, or
+ * the constant of its island. */
+void cf_coupled_lift_odds(const cf_coupled *coarse, const cf_coupled *l);
+
 /* e += coarse->e of the parent: the transpose of restriction. */
 void cf_coupled_prolong_back(const cf_coupled *coarse, const cf_coupled *l);
 

@@ -54,21 +54,25 @@ static ptrdiff_t lift_island(const cf_coupled *l, const ptrdiff_t first) {
     residual += (double)l->odd_value[end];
     fixed += (double)l->free[p] + (double)l->held[p];
   }
-  for (ptrdiff_t v = first; v < end; ++v)
-    l->odd_value[v] = l->e[l->odd_cell[v]] + (fixed > 0 ? (float)(residual / fixed) : 0);
+  for (ptrdiff_t v = first; v < end; ++v) l->odd_value[v] = fixed > 0 ? (float)(residual / fixed) : 0;
   return end;
 }
 
-/* What the cells with another parent will be: their e and their own correction. */
-static void correct_odds(const cf_coupled *coarse, const cf_coupled *l) {
+void cf_coupled_lift_odds(const cf_coupled *coarse, const cf_coupled *l) {
   for (ptrdiff_t v = 0; v < l->odds;) {
     if (l->odd_parent[v] == CF_NO_PARENT) {
       v = lift_island(l, v);
       continue;
     }
-    l->odd_value[v] = l->e[l->odd_cell[v]] + coarse->e[l->odd_parent[v]];
+    l->odd_value[v] = coarse->e[l->odd_parent[v]];
     ++v;
   }
+}
+
+/* What the cells with another parent will be: their e and their own correction. */
+static void correct_odds(const cf_coupled *coarse, const cf_coupled *l) {
+  cf_coupled_lift_odds(coarse, l);
+  for (ptrdiff_t v = 0; v < l->odds; ++v) l->odd_value[v] += l->e[l->odd_cell[v]];
 }
 
 /* A row of coarse cells, and those of its neighbours in y and z on the side of the fine row. */

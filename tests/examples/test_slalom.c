@@ -12,17 +12,6 @@ static double value_at(const example *e, const char *field, const double x, cons
   return (double)v.at[i * v.stride[0] + j * v.stride[1]];
 }
 
-static double metric(const example *e, const char *name) {
-  cf_metric names[CF_METRICS_MAX];
-  double values[CF_METRICS_MAX];
-  const int count = cf_sim_metric_names(e->sim, names);
-  cf_sim_metrics(e->sim, values);
-  for (int i = 0; i < count; ++i)
-    if (strcmp(names[i].name, name) == 0) return values[i];
-  fail_msg("no metric %s", name);
-  return NAN;
-}
-
 static void the_front_comes_when_its_way_is_done(void **state) {
   (void)state;
   example e = example_open("slalom/scene.yaml",
@@ -36,8 +25,8 @@ static void the_front_comes_when_its_way_is_done(void **state) {
   BELOW(fabs(early), 1e-3);
   assert_true(late > 0.01);
   assert_true(at_once > 0.03);
-  BELOW(fabs(metric(&e, "error_wave")), 1e-12);
-  BELOW(fabs(metric(&e, "error_fourier")), 1e-12);
+  BELOW(fabs(example_metric(&e, "error_wave")), 1e-12);
+  BELOW(fabs(example_metric(&e, "error_fourier")), 1e-12);
   example_close(&e);
 }
 
