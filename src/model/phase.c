@@ -46,6 +46,7 @@ cf_phase_params cf_crystal_params_at(const cf_scene *scene, const double t) {
   const bool driving = p->anisotropy.law == CF_SCENE_PHASE_DRIVING;
   return (cf_phase_params){
       .form = p->form == CF_SCENE_PHASE_PAPER ? CF_PHASE_PAPER : CF_PHASE_STABLE,
+      .plain = p->stencil == CF_SCENE_PHASE_FIVE_POINT,
       .width = p->width,
       .tau_eta = at_time(&p->tau_eta, t),
       .tau_1 = at_time(&p->tau_1, t),

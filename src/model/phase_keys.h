@@ -8,6 +8,7 @@
 #include "base/param.h"
 
 #define CF_PHASE_FORM_WORDS(W)    W(STABLE, stable) W(PAPER, paper)
+#define CF_PHASE_STENCIL_WORDS(W) W(ISOTROPIC, isotropic) W(FIVE_POINT, five_point)
 #define CF_PHASE_SCHEME_WORDS(W)  W(AUTO, auto) W(EXPLICIT, explicit) W(IMPLICIT, implicit) W(EULER, euler)
 #define CF_PHASE_DRIVING_WORDS(W) W(KOBAYASHI, kobayashi) W(KARMA_RAPPEL, karma_rappel)
 #define CF_PHASE_LAW_WORDS(W)     W(FOLD, fold) W(CUBIC, cubic) W(DRIVING, driving) W(NONE, none)
@@ -16,6 +17,7 @@
 #define CF_PHASE_SEED_WORDS(W)    W(BALL, ball) W(DISC, disc) W(BOX, box) W(LINE, line)
 
 enum { CF_SCENE_PHASE_STABLE, CF_SCENE_PHASE_PAPER };
+enum { CF_SCENE_PHASE_ISOTROPIC, CF_SCENE_PHASE_FIVE_POINT };
 enum { CF_SCENE_PHASE_AUTO, CF_SCENE_PHASE_EXPLICIT, CF_SCENE_PHASE_IMPLICIT, CF_SCENE_PHASE_EULER };
 enum { CF_SCENE_PHASE_KOBAYASHI, CF_SCENE_PHASE_KARMA_RAPPEL };
 enum { CF_SCENE_PHASE_FOLD, CF_SCENE_PHASE_CUBIC, CF_SCENE_PHASE_DRIVING, CF_SCENE_PHASE_NONE };
@@ -88,6 +90,10 @@ enum { CF_SCENE_SEED_BALL, CF_SCENE_SEED_DISC, CF_SCENE_SEED_BOX, CF_SCENE_SEED_
   P(scheme, word, "auto", "", CF_WORDS(CF_PHASE_SCHEME_WORDS),                                               \
     "explicit: substeps of three stages; implicit: two stages around the solver, for fine grids and large "  \
     "steps; euler: substeps of first order; auto: explicit where that costs less")                           \
+  P(stencil, word, "isotropic", "", CF_WORDS(CF_PHASE_STENCIL_WORDS),                                        \
+    "Differences of the phase across a face. isotropic: with those of the neighbouring faces, so that the "  \
+    "error of the Laplacian is alike in all directions; five_point (seven in 3D): its own cells' alone, as " \
+    "other programs do, for comparisons")                                                                    \
   P(width, number, "0.01", "m", "(0, inf)",                                                                  \
     "Width eps of the interface (delta of eq. 28): 6.2 of it lie between 10 % and 90 %; cells of up to 3 "   \
     "of it are common, 2 are better")                                                                        \

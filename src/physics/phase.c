@@ -208,7 +208,8 @@ cf_phase_limits cf_phase_limits_of(const cf_phase *p) {
   const cf_phase_params *q = &p->p;
   const int dim = p->grid->box.dim;
   const double h2 = p->grid->h * p->grid->h, star = dim == 3 ? fmax(1, q->star) : 1;
-  const double spread = 6 * q->width * q->width * p->bounds.stiff_max * star * star / h2;
+  const double steepest = q->plain ? 4 * dim : 6; /* h^2 times the largest eigenvalue of the Laplacian */
+  const double spread = steepest * q->width * q->width * p->bounds.stiff_max * star * star / h2;
   const double pull = q->karma_rappel ? 4 : 1,
                s = q->tau_eta * (q->karma_rappel ? p->bounds.a_min * p->bounds.a_min : 1);
   cf_phase_limits l;

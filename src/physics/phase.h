@@ -50,6 +50,7 @@ typedef enum cf_phase_form { CF_PHASE_STABLE, CF_PHASE_PAPER } cf_phase_form;
 
 typedef struct cf_phase_params {
   cf_phase_form form;
+  bool plain;            /* five-point differences (seven in 3D): the grid shows in the crystal */
   double width;          /* eps, m; the interface is 6.2 eps wide from 10 to 90 % */
   double tau_eta, tau_1; /* s; tau_eta may be 0 where tau_1 is not and F < 1, in the stable form */
   double f_eta;          /* F, 0 ... 1 */

@@ -5,7 +5,7 @@
  *     p_a = [10 d(p) + d(p+b) + d(p-b)]/(12 h),   d(q) = eta_q - eta_{q-a}     (3D: 8 d(p) and four neighbours)
  *     p_b = [(eta_{p+b} - eta_{p-b}) + (eta_{p-a+b} - eta_{p-a-b})]/(4 h)
  *
- * With these weights the Laplacian's error is isotropic to fourth order, and the anisotropy of a crystal is its own
+ * (or d(p)/h alone, if the caller wants plain differences). With these weights the Laplacian's error is isotropic to fourth order, and the anisotropy of a crystal is its own
  * and not the grid's. The sums are grouped so that a mirrored field gives mirrored fluxes to the last bit.
  *
  * No flux passes an insulated wall, whatever the crystal's angle to it.
@@ -117,8 +117,9 @@ static faces faces_of(const cf_phase *p, const cf_phase_part part, const cf_cell
   faces f = {
       .eta = eta.at, .e = p->places.strength.at, .C = p->places.C.at, .S = p->places.S.at, .law = &p->law};
   f.facing = (cf_facing){(cf_real)p->law.strength, (cf_real)p->law.C, (cf_real)p->law.S};
-  f.centre = (cf_real)(dim == 3 ? 8.0 / 12 : 10.0 / 12);
-  f.side = (cf_real)(1.0 / 12);
+  const double side = p->p.plain ? 0 : 1.0 / 12;
+  f.side = (cf_real)side;
+  f.centre = (cf_real)(1 - 2 * (dim - 1) * side);
   f.main = part != CF_PHASE_X_2;
   f.rest = part != CF_PHASE_X_1;
   for (int a = 0; a < dim; ++a) {
