@@ -20,6 +20,7 @@
 #include <pthread.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -94,6 +95,8 @@ static void say_error(const int code, const char *token) {
     cf_fail(CF_BAD_ARGUMENT, "the function has the wrong number of arguments");
   else if (code == NO_ELSE || code == LOST_COLON)
     cf_fail(CF_BAD_ARGUMENT, "a choice is written condition ? this : that");
+  else if (isinf(strtod(token, NULL)))
+    cf_fail(CF_BAD_ARGUMENT, "%s is more than a number can be, 1.8e308", token);
   else if (token[0] != '\0')
     cf_fail(CF_BAD_ARGUMENT, "`%s` may not stand here", token);
   else

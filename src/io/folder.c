@@ -198,7 +198,7 @@ cf_status cf_folder_make(const char *path) {
     if (mkdir(part.text, 0777) != 0 && errno != EEXIST)
       return cf_fail(CF_CANNOT_WRITE, "%s: the folder cannot be made: %s", part.text, strerror(errno));
     if (stat(part.text, &facts) != 0 || !S_ISDIR(facts.st_mode))
-      return cf_fail(CF_CANNOT_WRITE, "%s: is there and is not a folder", part.text);
+      return cf_fail(CF_CANNOT_WRITE, "%s: is there and is not a folder: another name is wanted", part.text);
     *at = end;
     if (end == '\0') return CF_OK;
   }

@@ -45,6 +45,7 @@ static cf_status read_stream(cf_config *config, FILE *stream, const char *path) 
 }
 
 static cf_status read_file(cf_config *config, const char *path) {
+  if (path[0] == '\0') return cf_fail(CF_BAD_SCENE, "the name of the scene is empty\ntry: cattaneo examples");
   FILE *stream = fopen(path, "rbe");
   if (stream == NULL) return fail_file(path, errno == ENOENT ? "there is no such file" : strerror(errno));
   const cf_status status = read_stream(config, stream, path);
@@ -235,6 +236,10 @@ static cf_status fail_unknown(const cf_reader *reader, const cf_param_table *tab
   if (cf_param_nearest_path(reader->config->table, entry->key, meant, sizeof meant))
     return cf_config_fail(reader->config, about, "unknown key %.60s%s%s: did you mean %s?", entry->key, in,
                           reader->path, meant);
+  if (entry->key[strspn(entry->key, "0123456789")] == '\0')
+    return cf_config_fail(reader->config, about,
+                          "unknown key %.60s%s%s: numbers have a point, 0.5, and no comma", entry->key, in,
+                          reader->path);
   return cf_config_fail(reader->config, about, "unknown key %.60s%s%s", entry->key, in, reader->path);
 }
 

@@ -196,7 +196,8 @@ static cf_status convert_documents(const cf_yaml *yaml, struct fy_parser *parser
   if (document == NULL && fy_diag_got_error(diag)) return syntax_error(yaml, diag);
   if (document == NULL || fy_document_root(document) == NULL) {
     fy_parse_document_destroy(parser, document);
-    return fail(yaml, (cf_place){yaml->source, yaml->from, 0}, "there is nothing in it");
+    return fail(yaml, (cf_place){yaml->source, yaml->from, 0},
+                "there is nothing in it: a scene starts with `cattaneo: 1`");
   }
   cf_status status = convert(yaml, fy_document_root(document), start, 0, root);
   fy_parse_document_destroy(parser, document);

@@ -90,6 +90,21 @@ static cf_status add_flow(cf_check *c) {
   return CF_OK;
 }
 
+/* What gives nothing: easily a slip of the units, or of the sign of an origin. */
+static void warn_of_sources(cf_check *c) {
+  const cf_scene_domain *d = &c->scene->domain;
+  for (int i = 0; i < c->scene->sources.count; ++i) {
+    const cf_scene_source *s = &c->scene->sources.item[i];
+    bool outside = false;
+    for (int a = 0; a < c->scene->dim && s->given.center; ++a) {
+      const double low = d->origin.count > 0 ? d->origin.value[a] : 0, high = low + d->size.value[a];
+      const double half = s->shape == CF_SCENE_SHAPE_SPHERE ? s->radius : s->half.value[a];
+      outside = outside || s->center.value[a] + half <= low || s->center.value[a] - half >= high;
+    }
+    if (outside) cf_writing_add(&c->warnings, "  sources.%d is outside the box and gives nothing\n", i);
+  }
+}
+
 /* --- time ------------------------------------------------------------------------------------------------- */
 
 /* The step of `dt: auto` where no model could be made: as the model does it, from the largest values. */
@@ -207,6 +222,7 @@ static cf_status write_page(cf_check *c) {
   if (isnan(c->dt)) CF_TRY(guess_dt(c));
   add_time(c);
   add_memory(c);
+  warn_of_sources(c);
   for (int i = 0; i < c->scene->fields.count; ++i) {
     const cf_scene_field *field = &c->scene->fields.item[i];
     if (cf_scene_name_is_flux(field->name) || (model->diffuses != NULL && !model->diffuses(c->scene, i)))

@@ -2,6 +2,7 @@
  *
  * Units: factors, what is refused, and the sentences for it.
  */
+#define _GNU_SOURCE
 #include "base/units.h"
 
 #include <pthread.h>

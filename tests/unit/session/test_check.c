@@ -144,6 +144,17 @@ static void check_finds_what_only_a_grid_can_tell(void **state) {
   cf_scene_destroy(scene);
 }
 
+static void check_warns_of_sources_outside_the_box(void **state) {
+  (void)state;
+  assert_null(strstr(PAGE("sources=[{shape: sphere, center: [1.1, 1], radius: 0.2, rate: 1}]"), "outside"));
+  assert_null(strstr(PAGE("sources=[{shape: box, center: [1.1, 1], half: [0.2, 1], rate: 1}]"), "outside"));
+  has(PAGE("sources=[{shape: sphere, center: [1.3, 1], radius: 0.2, rate: 1}]"),
+      "sources.0 is outside the box");
+  has(PAGE(
+          "sources=[{rate: 0, shape: everywhere}, {shape: box, center: [0.5, -1], half: [1, 0.5], rate: 1}]"),
+      "sources.1 is outside the box");
+}
+
 static void check_survives_any_failed_allocation(void **state) {
   (void)state;
   cf_scene *scene = scene_of(0, NULL);
@@ -170,6 +181,7 @@ int main(void) {
       cmocka_unit_test(check_counts_levels_as_the_solver_does),
       cmocka_unit_test(check_knows_scalars_apart),
       cmocka_unit_test(check_finds_what_only_a_grid_can_tell),
+      cmocka_unit_test(check_warns_of_sources_outside_the_box),
       cmocka_unit_test(check_survives_any_failed_allocation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
