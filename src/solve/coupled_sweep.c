@@ -4,6 +4,8 @@
  */
 #include "solve/coupled.h"
 
+#include "solve/colours.h"
+
 /* --- seams -------------------------------------------------------------------------------------------- */
 
 /* A ghost that is right already is not written: its page may not be ours to touch. */
@@ -80,6 +82,7 @@ CF_KERNEL void half_piece(const int dim, const int form, const int n, const view
   float fresh[APART];
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
+    CF_THROWN_AWAY(((i ^ at.parity) & 1) != 0);
     float sum = r[i];
     CF_AXIS_LOOP
     for (int a = 0; a < dim; ++a) {

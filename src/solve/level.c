@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "grid/sweep.h"
+#include "solve/colours.h"
 
 /* What the kernels of a row see: the tables of x as pointers, those of y and z as numbers. */
 typedef struct row {
@@ -83,6 +84,7 @@ CF_KERNEL void smooth_row(const int dim, const int n, const row *w, const ptrdif
   const cf_real omega = w->omega;
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
+    CF_THROWN_AWAY(((i ^ skip) & 1) != 0);
     cf_real diagonal;
     const cf_real residual = b[start + i] - apply_at(dim, &c, x, i, start + i, &diagonal);
     const cf_real inverse = 1 / (diagonal > 0 ? diagonal : 1);

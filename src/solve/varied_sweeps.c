@@ -21,6 +21,7 @@
  */
 #include <math.h>
 
+#include "solve/colours.h"
 #include "solve/varied.h"
 #include "solve/varied_row.h"
 
@@ -69,9 +70,11 @@ CF_KERNEL void relax_piece(const int dim, const int form, const int n, const cf_
                            const int from, const half *h) {
   const cf_varied_row o = *of;
   const cf_real factor = h->factor;
+  const int parity = (h->parity ^ from) & 1;
   cf_real fresh[APART];
   CF_ROW_LOOP
   for (int m = 0; m < n; ++m) {
+    CF_THROWN_AWAY(((m ^ parity) & 1) != 0);
     const int i = from + m;
     const cf_real x = o.x[i];
     cf_real sum = cf_alpha_at(form, &o, i) * x;
@@ -82,7 +85,6 @@ CF_KERNEL void relax_piece(const int dim, const int form, const int n, const cf_
     }
     fresh[m] = x + factor * (cf_real)o.inverse[i] * (o.b[i] - sum);
   }
-  const int parity = (h->parity ^ from) & 1;
   cf_real *x = o.x + from;
   CF_ROW_LOOP
   for (int m = 0; m < n; ++m)
