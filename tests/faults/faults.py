@@ -3,11 +3,12 @@
 """Whatever goes wrong once, nothing that was written before is lost: killed processes, failing disks, full disks,
 damaged checkpoints, too little address space.
 
-    faults.py PROGRAM SHIM [--all] [NAME...]     SHIM: the library made from shim.c; --all: every call, not a selection
+    faults.py PROGRAM SHIM [--stages | --all] [NAME...]     SHIM: the library made from shim.c
 
-A small run makes some 300 calls that change files. Each of them in turn goes wrong; afterwards every file that has its
-name is whole, `resume` goes on from a checkpoint no older than the one that was there, and ends with the same bytes as
-a run that nothing happened to.
+A small run makes some 500 calls that change files. One of them goes wrong; afterwards every file that has its name is
+whole, `resume` goes on from a checkpoint no older than the one that was there, and ends with the same bytes as a run
+that nothing happened to. Which one: a few (a minute); with --stages each kind of call at the beginning, in the middle
+and at the end of each kind of file (minutes); with --all each of them (hours).
 """
 
 import os
@@ -24,7 +25,8 @@ import time
 import unittest
 
 PROGRAM = SHIM = ""
-EVERY = False
+FEW, STAGES, ALL = range(3)
+LEVEL = FEW
 
 SCENE = """\
 cattaneo: 1
@@ -99,19 +101,36 @@ class Case(unittest.TestCase):
 class Disk(Case):
     def fault(self, name, kind, at, *arguments):
         shim = {"LD_PRELOAD": SHIM, "FAULT_FOLDER": str(self.folder / name), "FAULT_KIND": kind, "FAULT_AT": str(at),
-                "FAULT_COUNT": str(self.folder / "count"), "ASAN_OPTIONS": "verify_asan_link_order=0"}
+                "FAULT_TRACE": str(self.folder / "trace"), "ASAN_OPTIONS": "verify_asan_link_order=0"}
         return self.call(*arguments, environment=shim)
 
-    def count(self, name, *arguments):
-        self.assertEqual(self.fault(name, "none", 0, *arguments).returncode, 0)
-        calls = int((self.folder / "count").read_text())
-        self.assertGreater(calls, 80)
+    def trace(self, words, start):
+        """The calls of a run that nothing happens to, as `call file`, without the numbers in names."""
+        self.fresh("d", start)
+        self.assertEqual(self.fault("d", "none", 0, *words).returncode, 0)
+        calls = [re.sub(r"\d+", "#", line) for line in (self.folder / "trace").read_text().splitlines()]
+        self.assertGreater(len(calls), 80)
         return calls
 
-    def chosen(self, calls, step, seed):
-        if EVERY:
-            return range(1, calls + 1)
-        return range(1 + random.Random(seed).randrange(step), calls + 1, step)
+    @staticmethod
+    def stages(calls, kind):
+        """The places of each kind of call, by where they are among their like that follow one another."""
+        places, first = {}, 0
+        for at, call in enumerate(calls):
+            if at > 0 and calls[at - 1] != call:
+                first = at
+            last = at + 1 == len(calls) or calls[at + 1] != call
+            if kind in ("short", "full") and not call.startswith(("write", "pwrite", "fwrite", "fflush")):
+                continue  # as "error"
+            places.setdefault((call, "first" if at == first else "last" if last else "middle"), []).append(at + 1)
+        return places
+
+    def chosen(self, calls, step, kind):
+        """Calls, counted from 1."""
+        rng = random.Random(kind)
+        if LEVEL == STAGES:
+            return sorted(rng.choice(places) for places in self.stages(calls, kind).values())
+        return range(1, len(calls) + 1) if LEVEL == ALL else range(1 + rng.randrange(step), len(calls) + 1, step)
 
     def fresh(self, name, start):
         shutil.rmtree(self.folder / name, ignore_errors=True)
@@ -130,9 +149,9 @@ class Disk(Case):
             self.assertRegex(done.stderr, r"(No space left|Input/output error)", why)
 
     def walk(self, kind, words, step, start=None, least=None):
-        whole = self.whole()
-        for at in self.chosen(self.count_of(words, start), step, kind):
-            why = f"{kind} at call {at} of {' '.join(words)}"
+        whole, calls = self.whole(), self.trace(words, start)
+        for at in self.chosen(calls, step, kind):
+            why = f"{kind} at call {at} of {' '.join(words)}, {calls[at - 1]}"
             self.fresh("d", start)
             done = self.fault("d", kind, at, *words)
             self.judge(done, kind, why)
@@ -141,10 +160,6 @@ class Disk(Case):
                 continue
             self.every_file_is_whole("d", why) if at % 5 == 0 else None
             self.go_on(whole, "d", why, least)
-
-    def count_of(self, words, start):
-        self.fresh("d", start)
-        return self.count("d", *words)
 
     RUN = ("run", "scene.yaml", "-o", "d", "--threads", "1", "--progress", "none")
     RESUME = ("resume", "d", "--threads", "1", "--progress", "none")
@@ -203,7 +218,7 @@ class Disk(Case):
     def test_kills_at_random_moments(self):
         whole = self.whole()
         rng = random.Random(1)
-        for turn in range(60 if EVERY else 3):
+        for turn in range((3, 20, 60)[LEVEL]):
             self.fresh("d", None)
             run = subprocess.Popen([PROGRAM, *self.RUN], cwd=self.folder, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL)
@@ -237,7 +252,7 @@ class Checkpoints(Case):
 
     def test_flipped_bits_anywhere(self):
         rng = random.Random(2)
-        for turn in range(400 if EVERY else 6):
+        for turn in range((6, 40, 400)[LEVEL]):
             data = bytearray(self.good)
             at = rng.randrange(len(data)) if turn % 3 else rng.randrange(min(len(data), 4096))
             data[at] ^= 1 << rng.randrange(8)
@@ -245,7 +260,7 @@ class Checkpoints(Case):
 
     def test_cut_short_anywhere(self):
         rng = random.Random(3)
-        sizes = [0, 1, 511, 512, len(self.good) - 1] + [rng.randrange(len(self.good)) for _ in range(60 if EVERY else 2)]
+        sizes = [0, 1, 511, 512, len(self.good) - 1] + [rng.randrange(len(self.good)) for _ in range((2, 15, 60)[LEVEL])]
         for size in sizes:
             self.resumes_from_the_older(self.good[:size], f"{size} bytes left")
 
@@ -322,7 +337,7 @@ class Memory(Case):
             self.assertEqual(done.returncode, 5, f"{why}: {done.stderr}")
             self.assertRegex(done.stderr, r"memory", why)
             after(why)
-            at = at + 1 if EVERY else 2 * at + 1
+            at += (at + 1, at // 5 + 1, 1)[LEVEL]
 
     def test_run(self):
         whole = self.whole()
@@ -378,7 +393,7 @@ class Limits(Case):
         if "SANITIZED" in os.environ:
             self.skipTest("sanitizers take terabytes of it")
         least, codes = self.itself(), set()
-        for more in range(1, 260, 2 if EVERY else 37):
+        for more in range(1, 260, (37, 13, 2)[LEVEL]):
             for words in ((), ("--mem-limit", "1G"), ("--mem-limit", "1G", "--threads", "5")):
                 done = self.under((least + more) << 20, *words)
                 self.assertIn(done.returncode, (0, 5), f"{least} + {more} MB, {words}: {done.stderr}")
@@ -398,8 +413,9 @@ if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     PROGRAM, SHIM = os.path.abspath(sys.argv.pop(1)), os.path.abspath(sys.argv.pop(1))
-    if "--all" in sys.argv:
-        sys.argv.remove("--all")
-        EVERY = True
+    for level, option in ((STAGES, "--stages"), (ALL, "--all")):
+        if option in sys.argv:
+            sys.argv.remove(option)
+            LEVEL = level
     result = unittest.main(exit=False).result
     sys.exit(0 if result.wasSuccessful() else 1)

@@ -7,7 +7,7 @@
  *   FAULT_KIND    error  the call fails and does nothing         short  a write does half of what was asked, then fails
  *                 full   this and all later writes find no space  kill   a write does half, then the process is killed
  *   FAULT_AT      which call, counted from 1; 0: none
- *   FAULT_COUNT   a file that gets the number of calls at the end
+ *   FAULT_TRACE   a file that gets a line for every call: its name and the file's
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -27,27 +27,22 @@ typedef enum fault { NONE, ERROR, SHORT, FULL, KILL } fault;
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static long calls;
+static FILE *trace;
 
-static bool is_below(const char *path) {
-  const char *folder = getenv("FAULT_FOLDER");
-  return folder != NULL && strncmp(path, folder, strlen(folder)) == 0;
+__attribute__((constructor)) static void open_trace(void) {
+  const char *path = getenv("FAULT_TRACE");
+  if (path != NULL) trace = fopen(path, "w");
 }
 
-static bool is_watched(const int file) {
-  char link[64], path[PATH_MAX];
-  snprintf(link, sizeof link, "/proc/self/fd/%d", file);
-  const ssize_t length = readlink(link, path, sizeof path - 1);
-  if (length <= 0) return false;
-  path[length] = '\0';
-  return is_below(path);
-}
-
-/* What becomes of this call; `writes`: it would take room on the disk. */
-static fault next(const bool writes) {
-  const char *at = getenv("FAULT_AT"), *kind = getenv("FAULT_KIND");
+/* What becomes of the call `name` of the file `path`; `writes`: it would take room on the disk. */
+static fault next_of(const char *name, const char *path, const bool writes) {
+  const char *folder = getenv("FAULT_FOLDER"), *at = getenv("FAULT_AT"), *kind = getenv("FAULT_KIND");
+  const size_t length = folder != NULL ? strlen(folder) : 0;
+  if (length == 0 || strncmp(path, folder, length) != 0) return NONE;
   const long wanted = at != NULL ? atol(at) : 0;
   pthread_mutex_lock(&lock);
   const long now = ++calls;
+  if (trace != NULL) fprintf(trace, "%s %s\n", name, path + length);
   pthread_mutex_unlock(&lock);
   if (kind == NULL || wanted == 0 || now < wanted) return NONE;
   if (strcmp(kind, "full") == 0) return writes ? FULL : NONE;
@@ -55,12 +50,20 @@ static fault next(const bool writes) {
   return strcmp(kind, "short") == 0 ? SHORT : strcmp(kind, "kill") == 0 ? KILL : ERROR;
 }
 
-__attribute__((destructor)) static void tell_count(void) {
-  const char *path = getenv("FAULT_COUNT");
-  FILE *file = path != NULL ? fopen(path, "w") : NULL;
-  if (file == NULL) return;
-  fprintf(file, "%ld\n", calls);
-  fclose(file);
+/* The same of an open file. */
+static fault next(const char *name, const int file, const bool writes) {
+  char link[64], path[PATH_MAX];
+  snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+  const ssize_t length = readlink(link, path, sizeof path - 1);
+  if (length <= 0) return NONE;
+  path[length] = '\0';
+  return next_of(name, path, writes);
+}
+
+/* The same of a file by its name. */
+static fault next_named(const char *name, const char *file) {
+  char path[PATH_MAX];
+  return realpath(file, path) != NULL ? next_of(name, path, false) : NONE;
 }
 
 static void die(void) { kill(getpid(), SIGKILL); }
@@ -69,7 +72,7 @@ static void die(void) { kill(getpid(), SIGKILL); }
 
 ssize_t write(const int file, const void *bytes, const size_t size) {
   ssize_t (*real)(int, const void *, size_t) = REAL(write, ssize_t(*)(int, const void *, size_t));
-  const fault f = is_watched(file) ? next(true) : NONE;
+  const fault f = next("write", file, true);
   if (f == NONE) return real(file, bytes, size);
   if (f == SHORT) return real(file, bytes, size / 2);
   if (f == KILL) {
@@ -83,7 +86,7 @@ ssize_t write(const int file, const void *bytes, const size_t size) {
 static ssize_t faulty_pwrite(const int file, const void *bytes, const size_t size, const off_t at) {
   ssize_t (*real)(int, const void *, size_t, off_t) =
       REAL(pwrite64, ssize_t(*)(int, const void *, size_t, off_t));
-  const fault f = is_watched(file) ? next(true) : NONE;
+  const fault f = next("pwrite", file, true);
   if (f == NONE) return real(file, bytes, size, at);
   if (f == SHORT) return real(file, bytes, size / 2, at);
   if (f == KILL) {
@@ -104,7 +107,7 @@ ssize_t pwrite64(const int file, const void *bytes, const size_t size, const off
 size_t fwrite(const void *bytes, const size_t size, const size_t count, FILE *file) {
   size_t (*real)(const void *, size_t, size_t, FILE *) =
       REAL(fwrite, size_t(*)(const void *, size_t, size_t, FILE *));
-  const fault f = is_watched(fileno(file)) ? next(true) : NONE;
+  const fault f = next("fwrite", fileno(file), true);
   if (f == NONE) return real(bytes, size, count, file);
   const size_t half = f == SHORT || f == KILL ? real(bytes, size, count / 2, file) : 0;
   if (f == KILL) {
@@ -126,13 +129,13 @@ static bool fails(const fault f, const int reason) {
 
 int fflush(FILE *file) {
   int (*real)(FILE *) = REAL(fflush, int (*)(FILE *));
-  const fault f = file != NULL && is_watched(fileno(file)) ? next(true) : NONE;
+  const fault f = file != NULL ? next("fflush", fileno(file), true) : NONE;
   return fails(f, ENOSPC) ? EOF : real(file);
 }
 
 int fclose(FILE *file) {
   int (*real)(FILE *) = REAL(fclose, int (*)(FILE *));
-  const fault f = is_watched(fileno(file)) ? next(true) : NONE;
+  const fault f = next("fclose", fileno(file), true);
   if (f == KILL) die();
   const int done = real(file); /* closed in any case */
   return fails(f, ENOSPC) ? EOF : done;
@@ -140,7 +143,7 @@ int fclose(FILE *file) {
 
 int close(const int file) {
   int (*real)(int) = REAL(close, int (*)(int));
-  const fault f = is_watched(file) ? next(false) : NONE;
+  const fault f = next("close", file, false);
   if (f == KILL) die();
   const int done = real(file);
   return fails(f, EIO) ? -1 : done;
@@ -148,17 +151,17 @@ int close(const int file) {
 
 int fsync(const int file) {
   int (*real)(int) = REAL(fsync, int (*)(int));
-  return fails(is_watched(file) ? next(false) : NONE, EIO) ? -1 : real(file);
+  return fails(next("fsync", file, false), EIO) ? -1 : real(file);
 }
 
 int fdatasync(const int file) {
   int (*real)(int) = REAL(fdatasync, int (*)(int));
-  return fails(is_watched(file) ? next(false) : NONE, EIO) ? -1 : real(file);
+  return fails(next("fdatasync", file, false), EIO) ? -1 : real(file);
 }
 
 static int faulty_truncate(const int file, const off_t size) {
   int (*real)(int, off_t) = REAL(ftruncate64, int (*)(int, off_t));
-  return fails(is_watched(file) ? next(false) : NONE, EIO) ? -1 : real(file, size);
+  return fails(next("ftruncate", file, false), EIO) ? -1 : real(file, size);
 }
 
 int ftruncate(const int file, const off_t size) { return faulty_truncate(file, size); }
@@ -166,14 +169,10 @@ int ftruncate64(const int file, const off_t size) { return faulty_truncate(file,
 
 int rename(const char *from, const char *to) {
   int (*real)(const char *, const char *) = REAL(rename, int (*)(const char *, const char *));
-  char path[PATH_MAX];
-  const bool watched = realpath(from, path) != NULL && is_below(path);
-  return fails(watched ? next(false) : NONE, EIO) ? -1 : real(from, to);
+  return fails(next_named("rename", from), EIO) ? -1 : real(from, to);
 }
 
 int unlink(const char *name) {
   int (*real)(const char *) = REAL(unlink, int (*)(const char *));
-  char path[PATH_MAX];
-  const bool watched = realpath(name, path) != NULL && is_below(path);
-  return fails(watched ? next(false) : NONE, EIO) ? -1 : real(name);
+  return fails(next_named("unlink", name), EIO) ? -1 : real(name);
 }
