@@ -24,7 +24,11 @@
 /* Shapes `coarse` for l->coarsened. CF_NO_MEMORY. */
 cf_status cf_coarsen_create(const cf_coupled *l, cf_coupled *coarse);
 
-/* Fills `coarse` from the couplings of l, and l's ways to it. CF_NO_MEMORY. */
-cf_status cf_coarsen(cf_coupled *l, cf_coupled *coarse);
+/* Tiles of `coarse` over those of l, which may have changed. CF_NO_MEMORY. */
+cf_status cf_coarsen_follow(const cf_coupled *l, cf_coupled *coarse);
+
+/* Fills the part w of `coarse` from the couplings of l, and l's ways to it. The result has the same bits whatever else
+ * was filled before. CF_NO_MEMORY: everything is to be filled again. */
+cf_status cf_coarsen(cf_coupled *l, cf_coupled *coarse, const cf_part *w);
 
 #endif

@@ -50,6 +50,7 @@ cf_status cf_coupled_create(cf_coupled *l, const cf_box *b, const bool periodic[
   float_fields(l, field);
   for (int f = 0; f < FLOATS - (b->dim == 2); ++f) CF_TRY(field_create(l, (void **)field[f], sizeof(float)));
   for (int a = 0; a < b->dim; ++a) CF_TRY(field_create(l, (void **)&l->weight[a], 1));
+  CF_TRY(field_create(l, (void **)&l->mark, 1));
   return tiles == NULL ? all_rows(l) : CF_OK;
 }
 
@@ -58,8 +59,10 @@ void cf_coupled_destroy(cf_coupled *l) {
   float_fields(l, field);
   for (int f = 0; f < FLOATS; ++f) field_destroy(l, *field[f], sizeof(float));
   for (int a = 0; a < 3; ++a) field_destroy(l, l->weight[a], 1);
+  field_destroy(l, l->mark, 1);
   cf_free(l->all_rows);
   cf_free(l->odd_cell);
+  cf_free(l->odd_block);
   cf_free(l->odd_parent);
   cf_free(l->odd_value);
   cf_free(l->odd_island);
@@ -75,40 +78,141 @@ void cf_coupled_follow_tiles(cf_coupled *l) {
   for (int f = 0; f < FLOATS - (l->dim == 2); ++f)
     cf_tiles_follow_bytes(l->tiles, l->followed, *field[f], sizeof(float));
   for (int a = 0; a < l->dim; ++a) cf_tiles_follow_bytes(l->tiles, l->followed, l->weight[a], 1);
+  cf_tiles_follow_bytes(l->tiles, l->followed, l->mark, 1);
   l->followed = l->tiles->updates;
   l->row = l->tiles->row;
   l->run = l->tiles->run;
   l->rows = l->tiles->rows;
 }
 
+void cf_coupled_place(const cf_box *b, ptrdiff_t p, int at[3]) {
+  at[2] = b->dim == 3 ? (int)(p / b->stride[2]) : 0;
+  p -= at[2] * b->stride[2];
+  at[1] = (int)(p / b->stride[1]);
+  at[0] = (int)(p - at[1] * b->stride[1]);
+}
+
 /* --- from couplings to what the sweeps need ----------------------------------------------------------- */
 
-static void invert_row(const cf_coupled *l, const cf_run *run, const int j, const int k) {
-  for (int i = run->low; i < run->high; ++i) {
-    const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
-    float d = l->free[p] + l->held[p];
-    for (int a = 0; a < l->dim; ++a) d += l->c[a][p] + l->c[a][p + l->box.stride[a]];
-    l->inverse[p] = d > 0 ? 1 / d : 0;
+/* The cells of a row that are looked at in one go. */
+#define PIECE 256
+
+/* 1/diagonal, and which cells have a closed or held face: on the low side of axis a if low[a] says that one counts there,
+ * on the high side if high[a] does. Returns whether alpha holds any cell much. */
+CF_CLONES static bool invert_piece(const cf_coupled *l, const int n, const ptrdiff_t p, const int low[3],
+                                   const int high[3], unsigned char edge[PIECE]) {
+  const float *free = l->free + p, *held = l->held + p;
+  float *inverse = l->inverse + p, sum[PIECE];
+  int closed[PIECE], heavy = 0;
+  for (int i = 0; i < n; ++i) sum[i] = free[i] + held[i], closed[i] = 0;
+  for (int a = 0; a < l->dim; ++a) {
+    const float *below = l->c[a] + p, *above = l->c[a] + p + l->box.stride[a];
+    const int under = low[a], over = high[a];
+    CF_ROW_LOOP
+    for (int i = 0; i < n; ++i) {
+      sum[i] += below[i] + above[i];
+      closed[i] |= (below[i] > 0 ? 0 : under) | (above[i] > 0 ? 0 : over);
+    }
+  }
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    const float d = sum[i];
+    inverse[i] = d > 0 ? 1 / d : 0;
+    edge[i] = d > 0 && closed[i] != 0;
+    heavy |= free[i] * inverse[i] > 0.3f;
+  }
+  return heavy != 0;
+}
+
+/* The walls of the box are smooth and do not count as edges: their faces lie at the ends of rows along x. */
+static void pardon_ends(const cf_coupled *l, const int from, const int n, const int at[3],
+                        unsigned char edge[PIECE]) {
+  for (int end = 0; end < 2; ++end) {
+    const int i = end ? l->box.n[0] - 1 : 0;
+    if (l->periodic[0] || i < from || i >= from + n || !edge[i - from]) continue;
+    const ptrdiff_t p = cf_box_at(&l->box, i, at[1], at[2]);
+    bool closed = false;
+    for (int a = 0; a < l->dim; ++a) {
+      const int place = a == 0 ? i : at[a];
+      const bool low = l->periodic[a] || place > 0, high = l->periodic[a] || place < l->box.n[a] - 1;
+      closed = closed || (low && l->c[a][p] == 0) || (high && l->c[a][p + l->box.stride[a]] == 0);
+    }
+    edge[i - from] = closed;
   }
 }
 
-/* Whether a face of the cell is closed or held; the walls of the box are smooth and do not count. */
-static bool is_at_edge(const cf_coupled *l, const int at[3], const ptrdiff_t p) {
-  for (int a = 0; a < l->dim; ++a) {
-    const ptrdiff_t s = l->box.stride[a];
-    if ((at[a] > 0 || l->periodic[a]) && l->c[a][p] == 0) return true;
-    if ((at[a] < l->box.n[a] - 1 || l->periodic[a]) && l->c[a][p + s] == 0) return true;
+/* Marks of the cells [low, high) of row (j, k); whether alpha holds any of them much. */
+static bool finish_run(const cf_coupled *l, const cf_run *run, const int j, const int k) {
+  const int at[3] = {0, j, k};
+  int low[3] = {1, 1, 1}, high[3] = {1, 1, 1};
+  unsigned char edge[PIECE];
+  bool heavy = false;
+  for (int a = 1; a < l->dim; ++a) {
+    low[a] = l->periodic[a] || at[a] > 0;
+    high[a] = l->periodic[a] || at[a] < l->box.n[a] - 1;
   }
+  for (int from = run->low; from < run->high; from += PIECE) {
+    const int n = CF_MIN(PIECE, run->high - from);
+    const ptrdiff_t p = cf_box_at(&l->box, from, j, k);
+    heavy |= invert_piece(l, n, p, low, high, edge);
+    pardon_ends(l, from, n, at, edge);
+    for (int i = 0; i < n; ++i)
+      if (edge[i] != (l->mark[p + i] & CF_MARK_EDGE)) l->mark[p + i] ^= CF_MARK_EDGE;
+  }
+  return heavy;
+}
+
+/* Whether alpha holds any cell of the level much. */
+static bool is_any_heavy(const cf_coupled *l) {
+  int heavy = 0;
+#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(l)) reduction(| : heavy)
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run)
+        for (int i = run->low; i < run->high; ++i) {
+          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+          heavy |= l->free[p] * l->inverse[p] > 0.3f;
+        }
+  return heavy;
+}
+
+/* --- the band ----------------------------------------------------------------------------------------- */
+
+CF_CLONES static bool is_any_marked(const int n, const unsigned char *mark) {
+  int any = 0;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) any |= mark[i];
+  return any != 0;
+}
+
+/* Cell at[a] - 1 or + 1 of axis a, across a seam too, as a step from p. */
+static ptrdiff_t step_to(const cf_coupled *l, const int a, const int i, const int side) {
+  const int n = l->box.n[a], next = side ? i + 1 : i - 1;
+  return ((l->periodic[a] ? (next + n) % n : CF_MAX(0, CF_MIN(next, n - 1))) - i) * l->box.stride[a];
+}
+
+/* Whether any cell of a run or beside it is marked. */
+static bool is_near_marks(const cf_coupled *l, const cf_run *run, const int j, const int k) {
+  const int at[3] = {0, j, k}, n = run->high - run->low;
+  const ptrdiff_t row = cf_box_at(&l->box, 0, j, k), p = row + run->low;
+  if (is_any_marked(n, l->mark + p)) return true;
+  if (l->mark[row + CF_MAX(run->low - 1, 0)] || l->mark[row + CF_MIN(run->high, l->box.n[0] - 1)])
+    return true;
+  if (l->periodic[0] && (l->mark[row] || l->mark[row + l->box.n[0] - 1])) return true;
+  for (int a = 1; a < l->dim; ++a)
+    for (int side = 0; side < 2; ++side)
+      if (is_any_marked(n, l->mark + p + step_to(l, a, at[a], side))) return true;
   return false;
 }
 
-/* The cells at an edge and their neighbours. `rest` serves as the mark. */
-static bool is_in_band(const cf_coupled *l, const ptrdiff_t p) {
-  if (l->rest[p] > 0) return true;
-  for (int a = 0; a < l->dim; ++a) {
-    const ptrdiff_t s = l->box.stride[a];
-    if ((l->c[a][p] > 0 && l->rest[p - s] > 0) || (l->c[a][p + s] > 0 && l->rest[p + s] > 0)) return true;
-  }
+/* The cells at an edge and their neighbours. */
+static bool is_in_band(const cf_coupled *l, const int at[3], const ptrdiff_t p) {
+  if (l->mark[p] & CF_MARK_EDGE) return true;
+  for (int a = 0; a < l->dim; ++a)
+    for (int side = 0; side < 2; ++side)
+      if (l->c[a][side ? p + l->box.stride[a] : p] > 0 &&
+          l->mark[p + step_to(l, a, at[a], side)] & CF_MARK_EDGE)
+        return true;
   return false;
 }
 
@@ -123,51 +227,45 @@ static cf_status grow(ptrdiff_t **list, ptrdiff_t *room, const ptrdiff_t count) 
   return CF_OK;
 }
 
-static cf_status collect_band(cf_coupled *l) {
-  l->bands[0] = l->bands[1] = 0;
-  for (ptrdiff_t v = 0; v < l->rows; ++v)
-    CF_TILE_ROWS (l, v, j, k)
-      CF_TILE_RUNS (l, v, run)
+/* What is outside a part stays; within it the band is found anew. The order within a colour does not matter: its cells do
+ * not see each other. */
+static void keep_band(cf_coupled *l, const cf_part *w) {
+  for (int colour = 0; colour < 2; ++colour) {
+    ptrdiff_t kept = 0;
+    for (ptrdiff_t v = 0; v < l->bands[colour] && w->tiles != NULL; ++v) {
+      const ptrdiff_t p = l->band[colour][v];
+      int at[3];
+      cf_coupled_place(&l->box, p, at);
+      if (cf_coupled_has(l, p) && !cf_part_has(w, at)) l->band[colour][kept++] = p;
+    }
+    l->bands[colour] = kept;
+  }
+}
+
+static cf_status collect_band(cf_coupled *l, const cf_part *w) {
+  keep_band(l, w);
+  for (ptrdiff_t v = 0; v < w->rows; ++v)
+    CF_TILE_ROWS (w, v, j, k)
+      CF_TILE_RUNS (w, v, run) {
+        if (!is_near_marks(l, run, j, k)) continue;
         for (int i = run->low; i < run->high; ++i) {
+          const int at[3] = {i, j, k}, colour = (i + j + k) & 1;
           const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
-          if (!cf_coupled_has(l, p) || !is_in_band(l, p)) continue;
-          const int colour = (i + j + k) & 1;
+          if (!cf_coupled_has(l, p) || !is_in_band(l, at, p)) continue;
           CF_TRY(grow(&l->band[colour], &l->band_room[colour], l->bands[colour]));
           l->band[colour][l->bands[colour]++] = p;
         }
+      }
   return CF_OK;
 }
 
-cf_status cf_coupled_finish(cf_coupled *l) {
+cf_status cf_coupled_finish(cf_coupled *l, const cf_part *w) {
   for (int a = 0; a < l->dim; ++a) cf_coupled_wrap_axis(l, a, l->c[a]);
-  int edges = 0, heavy = 0;
-#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(l)) reduction(| : edges, heavy)
-  for (ptrdiff_t v = 0; v < l->rows; ++v)
-    CF_TILE_ROWS (l, v, j, k)
-      CF_TILE_RUNS (l, v, run) {
-        invert_row(l, run, j, k);
-        for (int i = run->low; i < run->high; ++i) {
-          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
-          const bool edge = cf_coupled_has(l, p) && is_at_edge(l, (int[]){i, j, k}, p);
-          l->rest[p] = edge ? 1 : 0;
-          edges |= edge;
-          heavy |= l->free[p] * l->inverse[p] > 0.3f;
-        }
-      }
-  l->is_gentle = heavy;
-  l->bands[0] = l->bands[1] = 0;
-  if (!edges) return CF_OK;
-  cf_coupled_wrap(l, l->rest);
-  CF_TRY(collect_band(l));
-  for (int a = 0; a < l->dim; ++a) /* what the wrap has left in ghosts */
-    if (l->periodic[a]) {
-      CF_PARALLEL_COUPLED (l, v)
-        CF_TILE_ROWS (l, v, j, k)
-          CF_TILE_RUNS (l, v, run)
-            memset(l->rest + cf_box_at(&l->box, run->low, j, k), 0,
-                   (size_t)(run->high - run->low) * sizeof(float));
-      cf_coupled_wrap(l, l->rest);
-      break;
-    }
-  return CF_OK;
+  int heavy = 0;
+#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(l)) reduction(| : heavy)
+  for (ptrdiff_t v = 0; v < w->rows; ++v)
+    CF_TILE_ROWS (w, v, j, k)
+      CF_TILE_RUNS (w, v, run) heavy |= finish_run(l, run, j, k);
+  l->is_gentle = heavy || (w->tiles != NULL && l->is_gentle && is_any_heavy(l));
+  return collect_band(l, w);
 }

@@ -32,6 +32,18 @@
 /* The parent of a cell of an island. */
 #define CF_NO_PARENT PTRDIFF_MIN
 
+/* Cells of a level that are made anew: all rows and runs of the level, or those of tiles. */
+typedef struct cf_part {
+  const cf_tile_row *row;
+  const cf_run *run;
+  ptrdiff_t rows;
+  const cf_tiles *tiles; /* NULL: all */
+} cf_part;
+
+/* Bits of cf_coupled.mark. */
+#define CF_MARK_EDGE 1 /* a face of the cell is closed or held, other than by a wall of the box */
+#define CF_MARK_ODD  2 /* it is among the odds */
+
 typedef struct cf_coupled {
   int dim, threads;
   cf_box box;
@@ -50,10 +62,12 @@ typedef struct cf_coupled {
   float *inverse, *free, *held; /* 1/diagonal (0: no equation) and its parts */
   float *c[3];                  /* couplings on low faces */
   unsigned char *weight[3];     /* of interpolation from the next level */
+  unsigned char *mark;          /* bits, for those who make levels; written only where they change */
 
   /* Cells whose parent is not the coarse cell around them (coarsen.h), and islands: pieces of a block coupled to nothing
-   * else, whose constant is solved for by itself. They take no part in the sweeps of restriction and interpolation. */
-  ptrdiff_t odds, odd_room, *odd_cell, *odd_parent;
+   * else, whose constant is solved for by itself. They take no part in the sweeps of restriction and interpolation. In
+   * the order of their blocks; those of an island follow each other. */
+  ptrdiff_t odds, odd_room, *odd_cell, *odd_block, *odd_parent;
   float *odd_value;
   int32_t *odd_island; /* 0: has a parent, or the number of the island */
 
@@ -69,8 +83,17 @@ void cf_coupled_destroy(cf_coupled *l); /* a zeroed one is fine */
 /* After the tiles have been updated: visits their runs, and gives back what is no longer under one. */
 void cf_coupled_follow_tiles(cf_coupled *l);
 
-/* From c, free and held: inverse, seams, and the band. CF_NO_MEMORY. */
-cf_status cf_coupled_finish(cf_coupled *l);
+static inline cf_part cf_coupled_all(const cf_coupled *l) { return (cf_part){l->row, l->run, l->rows, NULL}; }
+
+static inline bool cf_part_has(const cf_part *w, const int at[3]) {
+  return w->tiles == NULL || cf_tiles_has_cell(w->tiles, at[0], at[1], at[2]);
+}
+
+/* From c, free and held: inverse, seams, and the band, where a part has been made anew. CF_NO_MEMORY. */
+cf_status cf_coupled_finish(cf_coupled *l, const cf_part *w);
+
+/* Where cell p of a box is. */
+void cf_coupled_place(const cf_box *b, ptrdiff_t p, int at[3]);
 
 /* e from e = 0: a red-black sweep, and `band` sweeps over the band. */
 void cf_coupled_smooth_first(const cf_coupled *l, float omega, int band);
@@ -107,6 +130,11 @@ static inline bool cf_coupled_has(const cf_coupled *l, const ptrdiff_t p) { retu
 static inline int cf_coupled_threads(const cf_coupled *l) {
   return l->tiles != NULL ? cf_tiles_threads(l->tiles, l->threads) : cf_sweep_threads(&l->box, l->threads);
 }
+
+/* The rows of a part w of level l. */
+#define CF_PARALLEL_PART(l, w, v)                                                 \
+  CF_PRAGMA(omp parallel for schedule(static) num_threads(cf_coupled_threads(l))) \
+  for (ptrdiff_t v = 0; v < (w)->rows; ++v)
 
 /* With CF_TILE_ROWS and CF_TILE_RUNS of grid/tiles.h. */
 #define CF_PARALLEL_COUPLED(l, v)                                                 \

@@ -30,7 +30,10 @@ cf_status cf_varied_create(cf_varied **v, const cf_helmholtz *A) {
 
 static void release(cf_varied *v) {
   const cf_box *b = &v->A->grid.box;
-  if (v->levels > 0) cf_pockets_clear(&v->pockets, &v->level[0]);
+  if (v->levels > 0) {
+    cf_pockets_clear(&v->pockets, &v->level[0]);
+    cf_renewal_clear(&v->renewal, &v->level[0]);
+  }
   for (int l = 0; l < v->levels; ++l) cf_coupled_destroy(&v->level[l]);
   v->levels = 0;
   cf_band_destroy(&v->band);
@@ -304,7 +307,56 @@ bool cf_varied_has(const cf_varied *v, const cf_coefficients *c) {
          (c->region->tiles == NULL || v->level[0].followed == c->region->tiles->updates);
 }
 
+/* The finest level, in a part of it. */
+static cf_status fill(const filling *f, const cf_part *w) {
+  cf_coupled *l = &f->v->level[0];
+  CF_PARALLEL_PART (l, w, r)
+    CF_TILE_ROWS (w, r, j, k)
+      CF_TILE_RUNS (w, r, run)
+        for (int i = run->low; i < run->high; ++i)
+          fill_cell(f, (int[]){i, j, k}, cf_box_at(&l->box, i, j, k));
+  return cf_coupled_finish(l, w);
+}
+
+static ptrdiff_t cells_of(const cf_part *w) {
+  ptrdiff_t cells = 0;
+  for (ptrdiff_t v = 0; v < w->rows; ++v)
+    CF_TILE_RUNS (w, v, run)
+      cells += (ptrdiff_t)(w->row[v].j_end - w->row[v].j) * (w->row[v].k_end - w->row[v].k) *
+               (run->high - run->low);
+  return cells;
+}
+
+/* The part of level `at` that is made: all of it, or where its cells can feel what has changed. */
+static cf_status next_part(cf_varied *v, const int at, const bool all, cf_part *w) {
+  if (all)
+    *w = cf_coupled_all(&v->level[at]);
+  else
+    CF_TRY(cf_renewal_part(&v->renewal, at, &v->level[at], w));
+  v->renewed += cells_of(w);
+  return CF_OK;
+}
+
+static cf_status make_levels(cf_varied *v, const filling *f, const bool all) {
+  cf_part w;
+  v->renewed = 0;
+  CF_TRY(next_part(v, 0, all, &w));
+  CF_TRY(fill(f, &w));
+  for (int at = 1; at < v->depth; ++at) {
+    cf_coupled *l = &v->level[at - 1], *coarse = &v->level[at];
+    CF_TRY(cf_coarsen_follow(l, coarse));
+    if (!all) cf_renewal_descend(&v->renewal, l);
+    CF_TRY(next_part(v, at, all, &w));
+    CF_TRY(cf_coarsen(l, coarse, &w));
+  }
+  return is_eliminated(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;
+}
+
 cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficients *c) {
+  /* the levels stand, but for what has changed in the region */
+  const bool stands = are_numbers_in_region(c) && v->stamp != 0 && v->region == c->region &&
+                      v->tiles == c->region->tiles && v->alpha_number == c->alpha &&
+                      v->beta_number == c->beta;
   v->stamp = 0;
   if (c->region != NULL)
     for (int a = 0; a < 3; ++a)
@@ -328,17 +380,14 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
     v->pockets.count = 0;
     return CF_OK;
   }
-  cf_coupled *l = &v->level[0];
-  CF_PARALLEL_COUPLED (l, r)
-    CF_TILE_ROWS (l, r, j, k)
-      CF_TILE_RUNS (l, r, run)
-        for (int i = run->low; i < run->high; ++i)
-          fill_cell(&f, (int[]){i, j, k}, cf_box_at(&l->box, i, j, k));
-  CF_TRY(cf_coupled_finish(l));
   v->depth = depth_for(v, least > 0 ? couplings / least : INFINITY);
-  CF_TRY(cf_pockets_find(&v->pockets, l, least > 0));
-  for (int at = 1; at < v->depth; ++at) CF_TRY(cf_coarsen(&v->level[at - 1], &v->level[at]));
-  if (is_eliminated(v)) CF_TRY(cf_band_factor(&v->band, &v->level[v->depth - 1]));
+  bool all = true;
+  if (stands)
+    CF_TRY(cf_renewal_compare(&v->renewal, &v->level[0], c->region, &all));
+  else if (are_numbers_in_region(c))
+    CF_TRY(cf_renewal_take(&v->renewal, &v->level[0], c->region));
+  CF_TRY(make_levels(v, &f, all));
+  CF_TRY(cf_pockets_find(&v->pockets, &v->level[0], least > 0));
   v->stamp = are_numbers_in_region(c) ? c->region->stamp : 0;
   return CF_OK;
 }

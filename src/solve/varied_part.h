@@ -9,6 +9,7 @@
 #include "solve/coarsen.h"
 #include "solve/multigrid.h"
 #include "solve/pockets.h"
+#include "solve/renewal.h"
 #include "solve/varied.h"
 
 struct cf_varied {
@@ -32,7 +33,9 @@ struct cf_varied {
   cf_face given_beta;     /* the caller's; NULL: the number */
   cf_real *lo[3], *hi[3]; /* 1/h^2 along each axis, with the walls of the box (level.h) */
 
-  uint64_t stamp; /* of the region that numbers are set in, 0: none */
+  uint64_t stamp;     /* of the region that numbers are set in, 0: none */
+  cf_renewal renewal; /* since then */
+  ptrdiff_t renewed;  /* cells of all levels that were made anew when coefficients were set last */
 
   cf_cell r, p, Ap; /* of conjugate gradients */
   cf_cell best;     /* the solution that an iteration starts from */

@@ -135,8 +135,10 @@ static void couple_begin(couple *t, const bool layered) {
       t->fine.c[0][p] = i == 0 ? 0 : layered ? (float)(1 + i) : 0.7f;
       t->fine.c[1][p] = j == 0 ? 0 : 0.7f;
     }
-  OK(cf_coupled_finish(&t->fine));
-  OK(cf_coarsen(&t->fine, &t->coarse));
+  cf_part w = cf_coupled_all(&t->fine);
+  OK(cf_coupled_finish(&t->fine, &w));
+  w = cf_coupled_all(&t->coarse);
+  OK(cf_coarsen(&t->fine, &t->coarse, &w));
 }
 
 static void couple_end(couple *t) {
