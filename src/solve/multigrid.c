@@ -213,12 +213,18 @@ cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
     return cf_fail(CF_BAD_ARGUMENT, "alpha = %g, beta = %g: must be finite and not negative", c->alpha,
                    c->beta);
   if (A->is_varied && A->around_is_set && cf_varied_has(A->varied, c)) return CF_OK;
+  const bool stood = A->is_varied && A->around_is_set, in_box = A->in_box;
   A->around_is_set = false;
   A->is_varied = c->alpha_at != NULL || c->beta_at != NULL || c->region != NULL;
   if (A->is_varied) {
     A->in_box = A->singular = false;
     if (A->varied == NULL) CF_TRY(cf_varied_create(&A->varied, A));
     CF_TRY(cf_varied_set(A->varied, A, c));
+    if (stood && cf_varied_stood(A->varied)) {
+      A->in_box = in_box;
+      A->around_is_set = true;
+      return CF_OK;
+    }
     return c->region != NULL && c->alpha_at == NULL && c->beta_at == NULL ? set_around(A, c) : CF_OK;
   }
   CF_TRY(set_constant(A, c));

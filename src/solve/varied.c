@@ -142,124 +142,6 @@ static cf_status prepare(cf_varied *v, const cf_region *region) {
 
 /* --- coefficients ------------------------------------------------------------------------------------- */
 
-/* What the finest level is filled from. */
-typedef struct filling {
-  cf_varied *v;
-  const cf_coefficients *c;
-  double scale, h2;
-} filling;
-
-static double beta_of(const cf_coefficients *c, const int a, const ptrdiff_t p) {
-  return c->beta_at != NULL ? (double)c->beta_at->at[a][p] : c->beta;
-}
-
-static int kind_of(const cf_varied *v, const ptrdiff_t p) {
-  return v->region != NULL ? v->region->kind[p] : CF_CELL_INSIDE;
-}
-
-/* One face of a cell inside: `next` is the kind beyond it, -1 for a wall of the box. Returns the coupling (0: closed or
- * known); what a known value adds to the diagonal goes to `held`, and to `surplus` what the tables of walls do not know. */
-static double face_of(const filling *f, const int next, const double beta, const double table, double *held,
-                      double *surplus) {
-  if (next == CF_CELL_INSIDE) return beta * f->h2;
-  if (next < 0) *held += beta * table;
-  if (next > CF_CELL_INSIDE) {
-    *held += 2 * beta * f->h2;
-    *surplus += 2 * beta * f->h2;
-  }
-  return 0;
-}
-
-static void fill_cell(const filling *f, const int at[3], const ptrdiff_t p) {
-  cf_varied *v = f->v;
-  cf_coupled *l = &v->level[0];
-  const bool inside = kind_of(v, p) == CF_CELL_INSIDE;
-  const double alpha = !inside ? 0 : f->c->alpha_at != NULL ? (double)f->c->alpha_at->at[p] : f->c->alpha;
-  double held = 0, surplus = 0;
-  for (int a = 0; a < l->dim; ++a) {
-    const int n = l->box.n[a];
-    const ptrdiff_t s = l->box.stride[a];
-    for (int side = 0; side < 2; ++side) {
-      const bool end = at[a] == (side ? n - 1 : 0), wall = end && !(v->A->level[0].axis[a].periodic && n > 1);
-      const ptrdiff_t face = side ? p + s : p;
-      const ptrdiff_t other = !end ? (side ? p + s : p - s) : side ? p - (n - 1) * s : p + (n - 1) * s;
-      const int next = wall ? -1 : kind_of(v, other);
-      const double beta = inside ? beta_of(f->c, a, face) : 0;
-      const double table = v->A->level[0].axis[a].periodic ? 0
-                           : side                          ? (double)v->hi[a][n - 1]
-                                                           : (double)v->lo[a][0];
-      const double c = inside ? face_of(f, next, beta, table, &held, &surplus) : 0;
-      if (side == 0) l->c[a][p] = (float)(f->scale * c);
-      if (v->own_beta.at[0] != NULL && (side == 0 || end))
-        v->own_beta.at[a][face] = (cf_real)(wall || c > 0 ? beta : 0);
-    }
-  }
-  l->free[p] = (float)(f->scale * alpha);
-  l->held[p] = (float)(f->scale * held);
-  if (v->alpha.at != NULL && v->alpha.at == v->own_alpha.at) v->own_alpha.at[p] = (cf_real)(alpha + surplus);
-}
-
-/* Least and largest of what is met. */
-typedef struct range {
-  double least, most;
-} range;
-
-static range wider(const range a, const range b) {
-  return (range){b.least < a.least ? b.least : a.least, b.most > a.most ? b.most : a.most};
-}
-
-/* Of a run of f, where the cells are inside; kind NULL: all are. */
-CF_CLONES static range range_of_run(const int n, const cf_real *f, const unsigned char *kind) {
-  cf_real least = (cf_real)INFINITY, most = -(cf_real)INFINITY;
-  if (kind == NULL) {
-#pragma omp simd reduction(min : least) reduction(max : most)
-    for (int i = 0; i < n; ++i) {
-      least = f[i] < least ? f[i] : least;
-      most = f[i] > most ? f[i] : most;
-    }
-    return (range){(double)least, (double)most};
-  }
-#pragma omp simd reduction(min : least) reduction(max : most)
-  for (int i = 0; i < n; ++i) {
-    const bool inside = kind[i] == CF_CELL_INSIDE;
-    least = inside && f[i] < least ? f[i] : least;
-    most = inside && f[i] > most ? f[i] : most;
-  }
-  return (range){(double)least, (double)most};
-}
-
-/* Of a field that has the cells' indices. */
-static range range_of(const cf_varied *v, const cf_real *f) {
-  const cf_coupled *l = &v->level[0];
-  double least = INFINITY, most = -INFINITY;
-#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(l)) reduction(min      \
-                                                                                       : least) \
-    reduction(max                                                                               \
-              : most)
-  for (ptrdiff_t r = 0; r < l->rows; ++r)
-    CF_TILE_ROWS (l, r, j, k)
-      CF_TILE_RUNS (l, r, run) {
-        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
-        const range all =
-            wider((range){least, most},
-                  range_of_run(run->high - run->low, f + p, v->region != NULL ? v->region->kind + p : NULL));
-        least = all.least, most = all.most;
-      }
-  return (range){least, most};
-}
-
-/* The largest alpha and beta that the equation meets, and the least alpha. */
-static void find_range(const filling *f, double *alpha, double *least, double *beta) {
-  range of_alpha = {f->c->alpha, f->c->alpha}, of_beta = {0, f->c->beta};
-  if (f->c->alpha_at != NULL) of_alpha = wider((range){INFINITY, 0}, range_of(f->v, f->c->alpha_at->at));
-  if (f->c->beta_at != NULL) of_beta.most = 0;
-  for (int a = 0; a < f->v->A->grid.box.dim && f->c->beta_at != NULL; ++a)
-    of_beta = wider(of_beta, range_of(f->v, f->c->beta_at->at[a]));
-  *alpha = of_alpha.most;
-  *least = of_alpha.least;
-  *beta = of_beta.most;
-}
-
 static cf_status choose_fields(cf_varied *v, const cf_coefficients *c) {
   v->alpha = (cf_cell){NULL};
   v->alpha_number = c->alpha;
@@ -307,17 +189,6 @@ bool cf_varied_has(const cf_varied *v, const cf_coefficients *c) {
          (c->region->tiles == NULL || v->level[0].followed == c->region->tiles->updates);
 }
 
-/* The finest level, in a part of it. */
-static cf_status fill(const filling *f, const cf_part *w) {
-  cf_coupled *l = &f->v->level[0];
-  CF_PARALLEL_PART (l, w, r)
-    CF_TILE_ROWS (w, r, j, k)
-      CF_TILE_RUNS (w, r, run)
-        for (int i = run->low; i < run->high; ++i)
-          fill_cell(f, (int[]){i, j, k}, cf_box_at(&l->box, i, j, k));
-  return cf_coupled_finish(l, w);
-}
-
 static ptrdiff_t cells_of(const cf_part *w) {
   ptrdiff_t cells = 0;
   for (ptrdiff_t v = 0; v < w->rows; ++v)
@@ -337,11 +208,11 @@ static cf_status next_part(cf_varied *v, const int at, const bool all, cf_part *
   return CF_OK;
 }
 
-static cf_status make_levels(cf_varied *v, const filling *f, const bool all) {
+static cf_status make_levels(cf_varied *v, const cf_coefficients *c, const bool all) {
   cf_part w;
   v->renewed = 0;
   CF_TRY(next_part(v, 0, all, &w));
-  CF_TRY(fill(f, &w));
+  CF_TRY(cf_varied_fill(v, c, &w));
   for (int at = 1; at < v->depth; ++at) {
     cf_coupled *l = &v->level[at - 1], *coarse = &v->level[at];
     CF_TRY(cf_coarsen_follow(l, coarse));
@@ -368,12 +239,10 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
   v->A = A;
   CF_TRY(prepare(v, c->region));
   CF_TRY(choose_fields(v, c));
-  filling f = {v, c, 1, 1 / (A->grid.h * A->grid.h)};
   double alpha, least, beta;
-  find_range(&f, &alpha, &least, &beta);
-  const double couplings = 2 * A->grid.box.dim * beta * f.h2;
-  f.scale = alpha + couplings > 0 ? 1 / CF_MAX(alpha + couplings, 1e-300) : 1;
-  v->scale = f.scale;
+  cf_varied_find_range(v, c, &alpha, &least, &beta);
+  const double couplings = 2 * A->grid.box.dim * beta / (A->grid.h * A->grid.h);
+  v->scale = alpha + couplings > 0 ? 1 / CF_MAX(alpha + couplings, 1e-300) : 1;
   v->sweeps = cf_varied_set_sweeps(v, least, least > 0 ? couplings / least : INFINITY);
   if (v->sweeps) {
     v->depth = 1;
@@ -386,11 +255,13 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
     CF_TRY(cf_renewal_compare(&v->renewal, &v->level[0], c->region, &all));
   else if (are_numbers_in_region(c))
     CF_TRY(cf_renewal_take(&v->renewal, &v->level[0], c->region));
-  CF_TRY(make_levels(v, &f, all));
+  CF_TRY(make_levels(v, c, all));
   CF_TRY(cf_pockets_find(&v->pockets, &v->level[0], least > 0));
   v->stamp = are_numbers_in_region(c) ? c->region->stamp : 0;
   return CF_OK;
 }
+
+bool cf_varied_stood(const cf_varied *v) { return v->stamp != 0 && v->renewed == 0 && v->tiles == NULL; }
 
 int cf_varied_depth(const cf_varied *v) { return v->depth; }
 

@@ -28,6 +28,9 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
 /* Whether these coefficients are numbers in a region and what v has been given last. */
 bool cf_varied_has(const cf_varied *v, const cf_coefficients *c);
 
+/* Whether the coefficients set last were those before and nothing had changed in their region, which has no tiles. */
+bool cf_varied_stood(const cf_varied *v);
+
 /* As the functions of the same name in cattaneo.h. */
 cf_status cf_varied_solve(cf_varied *v, cf_cell b, const cf_solve_options *o, cf_cell x,
                           cf_solve_report *report);

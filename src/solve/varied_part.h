@@ -43,6 +43,17 @@ struct cf_varied {
   double *sums;     /* three for every row of the box */
 };
 
+/* --- from coefficients to couplings (varied_fill.c) ---------------------------------------------------- */
+
+/* The largest alpha and beta that the equation meets, and the least alpha. */
+void cf_varied_find_range(const cf_varied *v, const cf_coefficients *c, double *alpha, double *least,
+                          double *beta);
+
+/* Fills a part of the finest level and finishes it. CF_NO_MEMORY. */
+cf_status cf_varied_fill(cf_varied *v, const cf_coefficients *c, const cf_part *w);
+
+/* --- the cycle and what it works on (varied.c) ---------------------------------------------------------- */
+
 /* level[at].e = one V-cycle on level[at].r. */
 void cf_varied_cycle(const cf_varied *v, int at);
 
