@@ -93,13 +93,15 @@ cf_status cf_hdf5_open(cf_hdf5 *h, const char *path) {
   fclose(file);
   enter(h);
   const hid_t access = access_list();
-  h->file = access < 0 ? access : H5Fopen(path, H5F_ACC_RDONLY, access);
+  h->file =
+      access < 0 || cf_hdf5_driver_use(access, &h->error) < 0 ? -1 : H5Fopen(path, H5F_ACC_RDONLY, access);
   cf_status s = CF_OK;
   if (h->file < 0) {
-    H5Eclear2(H5E_DEFAULT);
-    s = cf_fail(CF_BAD_FILE,
-                "%s: is neither a frame nor a checkpoint, or is damaged: the HDF5 library cannot read it",
-                path);
+    s = cf_hdf5_fail(h, "read", "it");
+    if (h->error == 0)
+      s = cf_fail(CF_BAD_FILE,
+                  "%s: is neither a frame nor a checkpoint, or is damaged: the HDF5 library cannot read it",
+                  path);
   }
   H5Pclose(access);
   if (s != CF_OK) leave(h);

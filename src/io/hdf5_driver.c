@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,7 @@
 typedef struct driver_file {
   H5FD_t common; /* HDF5's part, first */
   int file;
+  bool writes;
   int *error;
   haddr_t end_of_allocated, end_of_file;
 } driver_file;
@@ -36,7 +38,8 @@ static H5FD_t *open_file(const char *name, const unsigned flags, const hid_t acc
   if ((flags & H5F_ACC_EXCL) != 0) mode |= O_EXCL;
   driver_file *f = info == NULL ? NULL : calloc(1, sizeof *f); /* HDF5 asks for one to be freed with close */
   if (f == NULL) return NULL;
-  *f = (driver_file){.file = open(name, mode | O_CLOEXEC, 0666), .error = info->error};
+  *f = (driver_file){
+      .file = open(name, mode | O_CLOEXEC, 0666), .writes = mode != O_RDONLY, .error = info->error};
   if (f->file < 0) {
     if ((flags & H5F_ACC_CREAT) != 0) note(f, errno); /* else it only looked whether the file is there */
     free(f);
@@ -48,7 +51,7 @@ static H5FD_t *open_file(const char *name, const unsigned flags, const hid_t acc
 
 static herr_t close_file(H5FD_t *common) {
   driver_file *f = (driver_file *)common;
-  if (close(f->file) != 0) note(f, errno);
+  if (close(f->file) != 0 && f->writes) note(f, errno);
   free(f);
   return 0;
 }
