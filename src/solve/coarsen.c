@@ -66,6 +66,44 @@ static unsigned char fill_axis(const cf_coupled *l, const cf_block *b, const int
   return l->coarsened[a] ? as_byte(through->after * through->both) : 0;
 }
 
+/* Whether, away from the walls of the box, the cells of a block and those beside it have no closed face, and all faces that
+ * count have one coupling along each axis: nearly always so. */
+static bool is_plain(const cf_coupled *l, const cf_block *b) {
+  if (b->count != 8 || !cf_coupled_has(l, b->p[0])) return false;
+  for (int a = 0; a < 3; ++a)
+    if (b->at[0][a] < 1 || b->at[0][a] + 3 >= l->box.n[a]) return false;
+  for (int a = 0; a < 3; ++a) {
+    const ptrdiff_t s = l->box.stride[a];
+    const float c0 = l->c[a][b->p[0]];
+    int marks = 0, other = 0;
+    for (int v = 0; v < 8; ++v) {
+      if (v >> a & 1) continue; /* the lines through the block */
+      const unsigned char *mark = l->mark + b->p[v];
+      const float *c = l->c[a] + b->p[v];
+      marks |= mark[-s] | mark[0] | mark[s] | mark[2 * s];
+      other |= c[-s] != c0 || c[0] != c0 || c[s] != c0 || c[2 * s] != c0 || c[3 * s] != c0;
+    }
+    if (marks != 0 || other) return false;
+  }
+  return true;
+}
+
+/* What fill_cell does there. */
+static void fill_plain(const cf_coupled *l, const cf_coupled *coarse, const cf_block *b,
+                       const float held_share) {
+  float free = 0, held = 0;
+  for (int v = 0; v < 8; ++v) free += l->free[b->p[v]], held += l->held[b->p[v]];
+  coarse->free[b->parent] = free;
+  coarse->held[b->parent] = held_share * held;
+  for (int a = 0; a < 3; ++a) {
+    const float face = l->c[a][b->p[0]], half = 0.5f / face, both = 1 / (1 / face + half + half);
+    const unsigned char weight = as_byte(half * both);
+    coarse->c[a][b->parent] = both + both + both + both;
+    for (int v = 0; v < 8; ++v)
+      if (l->weight[a][b->p[v]] != weight) l->weight[a][b->p[v]] = weight;
+  }
+}
+
 /* The couplings of a coarse cell to its low neighbours, its diagonal, and the weights of its cells. What cells with another
  * parent add comes later. */
 static void fill_cell(const cf_coupled *l, const cf_coupled *coarse, const int at[3],
@@ -74,6 +112,10 @@ static void fill_cell(const cf_coupled *l, const cf_coupled *coarse, const int a
   cf_block_find(&b, l, coarse, at);
   float free = 0, held = 0, c[3] = {0, 0, 0};
   series through = {0};
+  if (is_plain(l, &b)) {
+    fill_plain(l, coarse, &b, held_share);
+    return;
+  }
   for (int v = 0; v < 8 && v < b.count; ++v) {
     const ptrdiff_t p = b.p[v];
     const bool takes_part = cf_coupled_has(l, p) && !cf_odds_has(l, p);

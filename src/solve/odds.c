@@ -9,14 +9,11 @@
 
 /* --- pieces of blocks --------------------------------------------------------------------------------- */
 
-/* The usual case: all cells have an equation and no inner face is closed. */
+/* The usual case: no cell has a closed face, so all belong together, or none has an equation. */
 static bool is_whole(const cf_coupled *l, const cf_block *b) {
-  for (int v = 0; v < b->count; ++v) {
-    if (!cf_coupled_has(l, b->p[v])) return false;
-    for (int a = 0; a < l->dim; ++a)
-      if (cf_block_is_inner(l, a, b->at[v][a]) && !(l->c[a][b->p[v]] > 0)) return false;
-  }
-  return true;
+  int marks = 0;
+  for (int v = 0; v < 8; ++v) marks |= v < b->count ? l->mark[b->p[v]] : 0;
+  return !(marks & CF_MARK_EDGE);
 }
 
 /* Labels the pieces of a block: label[v] is the first cell of v's piece, -1 without an equation. Returns the main one, or
