@@ -9,6 +9,7 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "grid/sweep.h"
 #include "model/phase_part.h"
@@ -111,45 +112,51 @@ static cf_status grow_explicitly(cf_crystal *m, const double t, const double dt)
   return CF_OK;
 }
 
-/* W = factor (eta - what W held) or, with factor 0, eta itself; h = T - K eta on the way. */
+CF_CLONES static void enthalpy_row(const int n, const cf_real K, const cf_real *T, const cf_real *eta,
+                                   cf_real *h) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) h[i] = T[i] - K * eta[i];
+}
+
+/* W = eta, h = T - K eta. */
 static void remember(cf_crystal *m) {
   const cf_box *box = &m->grid->box;
-  const cf_real K = (cf_real)m->params.latent;
   CF_PARALLEL_ROWS (box, m->grid->threads, r) {
     const ptrdiff_t p = cf_box_row(box, r);
-    for (int i = 0; i < box->n[0]; ++i) {
-      m->W.at[p + i] = m->y.eta.at[p + i];
-      m->h_now.at[p + i] = m->y.T.at[p + i] - K * m->y.eta.at[p + i];
-    }
+    memcpy(m->W.at + p, m->y.eta.at + p, (size_t)box->n[0] * sizeof *m->W.at);
+    enthalpy_row(box->n[0], (cf_real)m->params.latent, m->y.T.at + p, m->y.eta.at + p, m->h_now.at + p);
   }
 }
 
-/* W = K (eta - W)/dt: what freezing gives off; h becomes the one before. */
-static void release(cf_crystal *m, const double dt) {
+CF_CLONES static void release_row(const int n, const cf_real per, const cf_real *eta, cf_real *W) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) W[i] = per * (eta[i] - W[i]);
+}
+
+/* W = K (eta - W)/dt: what freezing gives off; h becomes the one before. Returns the integral of W. */
+static double release(cf_crystal *m, const double dt) {
   const cf_box *box = &m->grid->box;
-  const cf_real per = (cf_real)(m->params.latent / dt);
   CF_PARALLEL_ROWS (box, m->grid->threads, r) {
     const ptrdiff_t p = cf_box_row(box, r);
-    for (int i = 0; i < box->n[0]; ++i) {
-      m->W.at[p + i] = per * (m->y.eta.at[p + i] - m->W.at[p + i]);
-      m->h_before.at[p + i] = m->h_now.at[p + i];
-    }
+    release_row(box->n[0], (cf_real)(m->params.latent / dt), m->y.eta.at + p, m->W.at + p);
+    m->rows[r] = cf_sweep_row_sum(box->n[0], m->W.at + p);
+    memcpy(m->h_before.at + p, m->h_now.at + p, (size_t)box->n[0] * sizeof *m->h_now.at);
   }
+  return cf_sum_ordered(m->rows, cf_box_rows(box)) * cf_grid_volume(m->grid);
 }
 
 static cf_status grow_implicitly(cf_crystal *m, const double t, const double dt, cf_step_report *report) {
   cf_solve_report one;
   cf_ledger moved = {0, 0, 0};
   remember(m);
-  const double before = integral(m, m->y.eta);
   const cf_phase_heat heat = {m->h_now, m->h_before, m->dt_before};
   CF_TRY(cf_phase_step_implicit(m->phase, t, dt, &heat, m->y.eta, m->y.r, &one));
   cf_step_report_add(report, CF_STAGE_REACT, &one);
-  release(m, dt);
+  const double freed = release(m, dt);
   m->dt_before = dt;
   CF_TRY(cf_diffuse_step_scalar(m->diffuse, t, dt, m->y.T, m->y.w, &moved, &one));
   cf_step_report_add(report, CF_STAGE_DIFFUSE, &one);
-  cf_ledger_add(&m->heat, moved.entered - moved.left - m->params.latent * (integral(m, m->y.eta) - before));
+  cf_ledger_add(&m->heat, moved.entered - moved.left - dt * freed);
   return CF_OK;
 }
 

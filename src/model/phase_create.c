@@ -81,6 +81,11 @@ static cf_status make_fields(cf_crystal *m) {
   return CF_OK;
 }
 
+CF_CLONES static void join_row(const int n, const cf_real *more, cf_real *W) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) W[i] += more[i];
+}
+
 /* dT/dt of a stage of diffusion: what the scene adds, and what freezing gives off. */
 static cf_status rate_of_heat(void *context, const double t, const cf_cell W) {
   cf_crystal *m = context;
@@ -88,8 +93,10 @@ static cf_status rate_of_heat(void *context, const double t, const cf_cell W) {
   if (m->acts.rate != NULL) CF_TRY(m->acts.rate(m->acts.context, t, W));
   CF_PARALLEL_ROWS (box, m->grid->threads, r) {
     const ptrdiff_t p = cf_box_row(box, r);
-    for (int i = 0; i < box->n[0]; ++i)
-      W.at[p + i] = (m->acts.rate != NULL ? W.at[p + i] : 0) + m->W.at[p + i];
+    if (m->acts.rate != NULL)
+      join_row(box->n[0], m->W.at + p, W.at + p);
+    else
+      memcpy(W.at + p, m->W.at + p, (size_t)box->n[0] * sizeof *W.at);
   }
   return CF_OK;
 }

@@ -123,7 +123,8 @@ double cf_ledger_error(const cf_ledger *l, const double inside) {
 
 static double content_row(const int n, const cf_real *c, const cf_real *x) {
   double lane[CF_SUM_LANES] = {0};
-  for (int i = 0; i < n; ++i) lane[i % CF_SUM_LANES] += (c != NULL ? (double)c[i] : 1) * (double)x[i];
+  if (c == NULL) return cf_sweep_row_sum(n, x);
+  for (int i = 0; i < n; ++i) lane[i % CF_SUM_LANES] += (double)c[i] * (double)x[i];
   return cf_sum_lanes(lane);
 }
 

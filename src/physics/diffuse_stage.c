@@ -13,6 +13,7 @@
  * are one sweep.
  */
 #include <math.h>
+#include <string.h>
 
 #include "physics/diffuse_part.h"
 
@@ -370,14 +371,16 @@ static cf_status solve_held(cf_diffuse *d, const double plain, cf_solve_report *
 static cf_status solve_stage(cf_diffuse *d, stage *s, const cf_diffused *y, cf_solve_report *report) {
   const cf_box *box = &d->grid->box;
   cf_diffuse_set_outside(d, y->phi);
-  CF_PARALLEL_ROWS (box, d->grid->threads, r)
-    right_side_row_by_form(box->dim, s->s != NULL, box->n[0], s, cf_box_row(box, r));
+  CF_PARALLEL_ROWS (box, d->grid->threads, r) { /* the guess is the old phi, copied while it is near */
+    const ptrdiff_t start = cf_box_row(box, r);
+    right_side_row_by_form(box->dim, s->s != NULL, box->n[0], s, start);
+    memcpy(d->x.at + start, y->phi.at + start, (size_t)box->n[0] * sizeof *d->x.at);
+  }
   CF_TRY(set_operator(d, &s->law));
   cf_helmholtz_add_walls(d->A, &d->walls, d->b);
   cf_diffuse_clear_outside(d, d->b);
   if (d->p.region != NULL) cf_helmholtz_add_held(d->A, d->b);
   if (d->has_radiation) cf_diffuse_visit_radiating(d, radiation_right_side, s);
-  cf_diffuse_copy(d, y->phi.at, d->x.at);
   cf_solve_report one;
   if (d->source.hold != NULL) {
     const double plain = norm(d, d->b);

@@ -98,7 +98,7 @@ static void destroy_state(const cf_phase *p, cf_phase_state *y) {
 
 static cf_status make_implicit(cf_phase *p) {
   const cf_box *box = &p->grid->box;
-  cf_cell *cells[] = {&p->x, &p->b, &p->alpha, &p->h};
+  cf_cell *cells[] = {&p->x, &p->b, &p->alpha};
   for (size_t i = 0; i < sizeof cells / sizeof *cells; ++i) CF_TRY(cf_cell_create(cells[i], box));
   CF_TRY(cf_face_create(&p->beta, box));
   p->beta_is = -1;
@@ -162,7 +162,7 @@ cf_status cf_phase_create(cf_phase **p, const cf_grid *g, const cf_phase_walls *
 void cf_phase_destroy(cf_phase *p) {
   if (p == NULL) return;
   const cf_box *box = &p->grid->box;
-  cf_cell *cells[] = {&p->x, &p->b, &p->alpha, &p->X, &p->h};
+  cf_cell *cells[] = {&p->x, &p->b, &p->alpha, &p->X};
   for (size_t i = 0; i < sizeof cells / sizeof *cells; ++i) cf_cell_destroy(cells[i], box);
   for (int i = 0; i < 2; ++i) destroy_state(p, &p->stage[i]);
   cf_face_destroy(&p->beta, box);

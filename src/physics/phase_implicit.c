@@ -24,6 +24,7 @@
  * tau_eta = 0 is an ordinary value: the interface is then in equilibrium with T at all times.
  */
 #include <math.h>
+#include <string.h>
 
 #include "physics/phase_part.h"
 
@@ -49,7 +50,15 @@ typedef struct stage {
   double weight;             /* of the stage's change: y <- y* + weight (y - y*) */
   double ahead;              /* of r: e begins as eta* + ahead r */
   cf_cell eta, r;            /* eta*, r* */
+  const cf_real *h, *h_before;
+  double later; /* H at the stage's end is h + later (h - h_before) */
 } stage;
+
+CF_CLONES static void extrapolate_row(const int n, const cf_real later, const cf_real *now,
+                                      const cf_real *before, cf_real *to) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) to[i] = now[i] + later * (now[i] - before[i]);
+}
 
 CF_CLONES static void rate_row(const int n, const double tau, const cf_real *A2, const cf_real *mobility,
                                cf_real *rate) {
@@ -92,31 +101,61 @@ CF_KERNEL void equation_row(const int dim, const int n, const equation *q, const
 }
 CF_CLONED(equation_row, const equation *, const ptrdiff_t)
 
+/* The same where e, X and f are 0; J is of no interest where so is everything else. */
+CF_CLONES static void idle_row(const int n, const equation *q, const ptrdiff_t start) {
+  const cf_real *tau = q->tau, *eta = q->eta + start;
+  cf_real *alpha = q->alpha + start, *b = q->b + start;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    alpha[i] = tau[i];
+    b[i] = tau[i] * eta[i];
+  }
+}
+
 CF_CLONES static void add_row(const int n, const cf_real factor, const cf_real *from, cf_real *to) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) to[i] += factor * from[i];
 }
 
-static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start, const ptrdiff_t r,
-                  void *context) {
-  const stage *s = context;
-  const cf_box *box = &p->grid->box;
-  (void)r;
-  cf_phase_react f = cf_phase_react_of(p, rows, box->n[0], p->x.at, start);
-  f.T = p->h.at + start;
+/* J and f of the busy part of the row, in rows->x and rows->react. */
+static void react(const cf_phase *p, cf_phase_rows *rows, const stage *s, const ptrdiff_t start) {
+  const int from = rows->busy.from, n = rows->busy.to - from;
+  cf_phase_react f = cf_phase_react_of(p, rows, n, p->x.at, start + from);
+  f.T = s->h + start + from;
+  if (s->later != 0) {
+    extrapolate_row(n, (cf_real)s->later, f.T, s->h_before + start + from, rows->rate);
+    f.T = rows->rate;
+  }
   f.lean = rows->x; /* the fluxes in x have been used */
-  cf_phase_react_row(box->n[0], &f);
-  tau_row(p, rows, p->x.at, start);
+  cf_phase_react_row(n, &f);
+}
+
+static equation equation_of(const cf_phase *p, const cf_phase_rows *rows, const stage *s) {
   equation q = {.c = (cf_real)s->c, .bound = (cf_real)s->bound, .e = p->x.at, .eta = s->eta.at};
   q.tau = rows->rate, q.X = rows->div, q.f = rows->react, q.J = rows->x;
   q.alpha = p->alpha.at, q.b = p->b.at;
-  for (int a = 0; a < box->dim; ++a) {
+  for (int a = 0; a < p->grid->box.dim; ++a) {
     const double star = (a == 2 ? p->p.star : 1) / p->grid->h;
-    q.stride[a] = box->stride[a];
+    q.stride[a] = p->grid->box.stride[a];
     q.star2[a] = (cf_real)(star * star);
   }
-  equation_row_by_dim(box->dim, box->n[0], &q, start);
-  if (s->r.at != NULL) add_row(box->n[0], (cf_real)s->m, s->r.at + start, p->b.at + start);
+  return q;
+}
+
+static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start, const ptrdiff_t r,
+                  void *context) {
+  const stage *s = context;
+  const int dim = p->grid->box.dim, all = p->grid->box.n[0], from = rows->busy.from, to = rows->busy.to;
+  equation q = equation_of(p, rows, s);
+  (void)r;
+  if (from < to) react(p, rows, s, start);
+  tau_row(p, rows, p->x.at, start);
+  idle_row(from, &q, start);
+  q.tau += to;
+  idle_row(all - to, &q, start + to);
+  q.tau = rows->rate + from, q.X = rows->div + from;
+  if (from < to) equation_row_by_dim(dim, to - from, &q, start + from);
+  if (s->r.at != NULL) add_row(all, (cf_real)s->m, s->r.at + start, p->b.at + start);
 }
 
 static void fill_row(const int n, const cf_real value, cf_real *to) {
@@ -221,33 +260,33 @@ static void foresee(const cf_phase *p, const stage *s) {
   }
 }
 
-static void set_field(const cf_phase *p, const cf_cell from, const cf_cell before, const double ahead,
-                      const cf_cell to) {
+static void copy_field(const cf_phase *p, const cf_cell from, const cf_cell to) {
   const cf_box *box = &p->grid->box;
-  CF_PARALLEL_ROWS (box, p->grid->threads, r) {
-    const ptrdiff_t start = cf_box_row(box, r);
-    for (int i = 0; i < box->n[0]; ++i) {
-      const ptrdiff_t q = start + i;
-      to.at[q] = ahead != 0 ? from.at[q] + (cf_real)ahead * (from.at[q] - before.at[q]) : from.at[q];
-    }
-  }
+  CF_PARALLEL_ROWS (box, p->grid->threads, r)
+    memcpy(to.at + cf_box_row(box, r), from.at + cf_box_row(box, r), (size_t)box->n[0] * sizeof *to.at);
 }
 
-static cf_status run_stage(cf_phase *p, const double t_end, const double delta, const double weight,
-                           const cf_cell eta, const cf_cell r, cf_solve_report *report) {
-  const double tau_1 = p->has_r ? p->p.tau_1 : 0, a = p->bounds.a_max * p->p.width;
-  stage s = {.delta = delta, .weight = weight, .bound = a * a, .eta = eta};
+/* The end of a stage and its length; what of the change counts; and what its H is. */
+typedef struct stage_place {
+  double t_end, delta, weight, later;
+} stage_place;
+
+static cf_status run_stage(cf_phase *p, const stage_place *at, const cf_phase_heat *heat, const cf_cell eta,
+                           const cf_cell r, cf_solve_report *report) {
+  const double tau_1 = p->has_r ? p->p.tau_1 : 0, a = p->bounds.a_max * p->p.width, delta = at->delta;
+  stage s = {.delta = delta, .weight = at->weight, .bound = a * a, .eta = eta, .later = at->later};
+  s.h = heat->h_now.at, s.h_before = heat->h_before.at;
   s.pull = tau_1 > 0 ? 1 / (1 + delta / tau_1) : 0;
   s.m = delta * s.pull;
   s.c = tau_1 > 0 ? (delta * (1 - s.pull) + p->p.f_eta * s.m) : delta;
   if (p->has_r) s.r = r;
-  cf_wall_values_sample(&p->eta_walls, t_end);
+  cf_wall_values_sample(&p->eta_walls, at->t_end);
   const bool foreseen = p->has_r && p->p.f_eta == 0 && delta <= FORESEEN * p->p.tau_eta && delta <= tau_1;
   if (foreseen) {
     s.ahead = delta / p->p.tau_eta;
     foresee(p, &s);
   } else {
-    set_field(p, eta, eta, 0, p->x);
+    copy_field(p, eta, p->x);
   }
   for (int i = foreseen ? 1 : 0; i < PASSES; ++i) CF_TRY(pass(p, &s, report));
   finish(p, &s);
@@ -257,9 +296,8 @@ static cf_status run_stage(cf_phase *p, const double t_end, const double delta, 
 cf_status cf_phase_step_implicit(cf_phase *p, const double t, const double dt, const cf_phase_heat *heat,
                                  const cf_cell eta, const cf_cell r, cf_solve_report *report) {
   const double g = 1 - sqrt(0.5), per = heat->dt_before > 0 ? dt / heat->dt_before : 0;
+  const stage_place first = {t + g * dt, g * dt, 1 + sqrt(2), g * per}, second = {t + dt, g * dt, 1, per};
   *report = (cf_solve_report){.converged = true};
-  set_field(p, heat->h_now, heat->h_before, g * per, p->h);
-  CF_TRY(run_stage(p, t + g * dt, g * dt, 1 + sqrt(2), eta, r, report));
-  set_field(p, heat->h_now, heat->h_before, per, p->h);
-  return run_stage(p, t + dt, g * dt, 1, eta, r, report);
+  CF_TRY(run_stage(p, &first, heat, eta, r, report));
+  return run_stage(p, &second, heat, eta, r, report);
 }

@@ -45,7 +45,7 @@ struct cf_phase {
   cf_real *room;           /* the memory of the rows */
   cf_phase_state stage[2]; /* of Runge-Kutta */
   cf_helmholtz *A;         /* of implicit steps, and their fields */
-  cf_cell x, b, alpha, X, h;
+  cf_cell x, b, alpha, X;
   cf_face beta;
   double beta_is;  /* which number beta stands for */
   double *sums;    /* 3 a row of the box */

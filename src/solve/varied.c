@@ -48,6 +48,10 @@ static void release(cf_varied *v) {
     cf_free(v->hi[a]);
     v->lo[a] = v->hi[a] = NULL;
   }
+  for (int i = 0; i < 2; ++i) {
+    cf_free(v->busy[i]);
+    v->busy[i] = NULL;
+  }
   cf_free(v->sums);
   v->sums = NULL;
 }
@@ -112,6 +116,7 @@ static cf_status make(cf_varied *v) {
       v->hi[a][i] = (cf_real)axis->hi1[i];
     }
   }
+  for (int i = 0; i < 2; ++i) CF_TRY(CF_NEW(&v->busy[i], cf_box_rows(&v->A->grid.box)));
   return CF_NEW(&v->sums, 3 * cf_box_rows(&v->A->grid.box));
 }
 

@@ -41,6 +41,7 @@ struct cf_varied {
   cf_cell best;     /* the solution that an iteration starts from */
   double scale;     /* of the levels: theirs over the equation's own */
   double *sums;     /* three for every row of the box */
+  cf_run *busy[2];  /* of half sweeps: where x or b is not 0, per row of the box; and scratch */
 };
 
 /* --- from coefficients to couplings (varied_fill.c) ---------------------------------------------------- */
@@ -74,8 +75,9 @@ typedef struct cf_varied_sums {
 /* r = b - A x; the squares of r, of b, and of x times the diagonal (as level 0 has it). */
 cf_varied_sums cf_varied_form(const cf_varied *v, cf_cell x, cf_cell b);
 
-/* Row (j, k) of that, of the level's group of rows `row`, with the first `count` sums; so many sums of all rows. */
-void cf_varied_form_row(const cf_varied *v, int j, int k, ptrdiff_t row, int count, cf_cell x, cf_cell b);
+/* The part `run` of row (j, k), which begins at a whole number of lanes, with the first two sums, for half sweeps; and as
+ * many sums of all rows. */
+void cf_varied_form_run(const cf_varied *v, int j, int k, const cf_run *run, cf_cell x, cf_cell b);
 cf_varied_sums cf_varied_add_up(const cf_varied *v, int count);
 
 /* Residual and convergence from what has been formed. CF_NOT_FINITE. */

@@ -168,32 +168,40 @@ void cf_varied_set_ghosts(const cf_varied *v, const cf_cell x) {
     }
 }
 
-void cf_varied_form_row(const cf_varied *v, const int j, const int k, const ptrdiff_t row, const int count,
-                        const cf_cell x, const cf_cell b) {
+/* r on a run, and `count` sums of it. */
+static void form_run(const cf_varied *v, const cf_run *run, const int j, const int k, const int count,
+                     const cf_cell x, const cf_cell b, lanes *sums) {
   const cf_coupled *l = &v->level[0];
+  const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+  const int n = run->high - run->low;
+  cf_varied_row o = cf_varied_row_of(v, run, j, k, x);
+  o.b = b.at + p;
+  o.y = v->r.at + p;
+  remain_row(l->dim, cf_varied_form_of(v), n, &o, 0);
+  dot_run(n, v->r.at + p, v->r.at + p, sums->sum[0]);
+  if (v->sweeps) /* every cell has an equation */
+    dot_run(n, o.b, o.b, sums->sum[1]);
+  else
+    side_run(n, &o, sums->sum[1]);
+  if (count > 2) size_run(n, &o, sums->sum[2]);
+}
+
+void cf_varied_form_run(const cf_varied *v, const int j, const int k, const cf_run *run, const cf_cell x,
+                        const cf_cell b) {
   lanes sums = {{{0}}};
-  CF_TILE_RUNS (l, row, run) {
-    const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
-    const int n = run->high - run->low;
-    cf_varied_row o = cf_varied_row_of(v, run, j, k, x);
-    o.b = b.at + p;
-    o.y = v->r.at + p;
-    remain_row(l->dim, cf_varied_form_of(v), n, &o, 0);
-    dot_run(n, v->r.at + p, v->r.at + p, sums.sum[0]);
-    if (v->sweeps) /* every cell has an equation */
-      dot_run(n, o.b, o.b, sums.sum[1]);
-    else
-      side_run(n, &o, sums.sum[1]);
-    if (count > 2) size_run(n, &o, sums.sum[2]);
-  }
-  keep_row(v, count, j, k, &sums);
+  if (run->low < run->high) form_run(v, run, j, k, 2, x, b, &sums);
+  keep_row(v, 2, j, k, &sums);
 }
 
 cf_varied_sums cf_varied_form(const cf_varied *v, const cf_cell x, const cf_cell b) {
   const cf_coupled *l = &v->level[0];
   cf_varied_set_ghosts(v, x);
   CF_PARALLEL_COUPLED (l, w)
-    CF_TILE_ROWS (l, w, j, k) cf_varied_form_row(v, j, k, w, 3, x, b);
+    CF_TILE_ROWS (l, w, j, k) {
+      lanes sums = {{{0}}};
+      CF_TILE_RUNS (l, w, run) form_run(v, run, j, k, 3, x, b, &sums);
+      keep_row(v, 3, j, k, &sums);
+    }
   return cf_varied_add_up(v, 3);
 }
 

@@ -18,8 +18,12 @@
  *
  * A half sweep does not depend on the order of its cells, so the bits do not depend on the slabs. Across the seams
  * of periodic axes it goes half sweep by half sweep instead.
+ *
+ * Where x and b are 0 farther around than there are half sweeps x stays 0: of every row only the rest is visited, with
+ * the same bits as all of it.
  */
 #include <math.h>
+#include <string.h>
 
 #include "solve/colours.h"
 #include "solve/varied.h"
@@ -139,16 +143,78 @@ static void plan(pass *p, const bool odd_seam, const double gain) {
     p->omega[s] = odd_seam ? 1 : s == 1 ? 1 / (1 - J2 / 2) : 1 / (1 - J2 * p->omega[s - 1] / 4);
 }
 
+/* --- where there is something --------------------------------------------------------------------------- */
+
+/* Whether so many cells of x and b have nothing but 0; what is not a number is something. */
+CF_KERNEL bool are_empty(const int n, const cf_real *x, const cf_real *b) {
+  int some = 0;
+#pragma omp simd reduction(| : some)
+  for (int i = 0; i < n; ++i) some |= (x[i] != 0) | (b[i] != 0);
+  return some == 0;
+}
+
+/* In whole blocks. */
+#define BLOCK 32
+
+CF_CLONES static cf_run run_of_row(const int n, const cf_real *x, const cf_real *b) {
+  int low = 0, high = n;
+  while (low + BLOCK <= n && are_empty(BLOCK, x + low, b + low)) low += BLOCK;
+  while (high - BLOCK >= low && are_empty(BLOCK, x + high - BLOCK, b + high - BLOCK)) high -= BLOCK;
+  return (cf_run){low, high};
+}
+
+static cf_run joined(const cf_run a, const cf_run b) {
+  if (a.low >= a.high) return b;
+  if (b.low >= b.high) return a;
+  return (cf_run){CF_MIN(a.low, b.low), CF_MAX(a.high, b.high)};
+}
+
+/* Every row becomes what it and `reach` rows on both sides along axis 1 or 2 have. */
+static void widen(const cf_box *box, const int a, const int reach, const cf_run *from, cf_run *to) {
+  const int rows = box->n[1], stride = a == 1 ? 1 : rows, n = box->n[a];
+  for (ptrdiff_t r = 0; r < cf_box_rows(box); ++r) {
+    const int at = (int)(a == 1 ? r % rows : r / rows);
+    cf_run all = {0, 0};
+    for (int i = CF_MAX(at - reach, 0) - at; i <= CF_MIN(at + reach, n - 1) - at; ++i)
+      all = joined(all, from[r + (ptrdiff_t)i * stride]);
+    to[r] = all;
+  }
+}
+
+/* Runs that so many half sweeps and the residual concern: v->busy[0]. */
+static void find_busy(const pass *p, const int threads, const bool seam) {
+  const cf_varied *v = p->v;
+  const cf_box *box = &v->level[0].box;
+  const int n = box->n[0], lanes = CF_SUM_LANES, reach = (p->count + lanes) / lanes * lanes;
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (ptrdiff_t r = 0; r < cf_box_rows(box); ++r) {
+    const ptrdiff_t at = cf_box_row(box, r);
+    cf_run run = seam ? (cf_run){0, n} : run_of_row(n, p->x.at + at, p->b.at + at);
+    if (run.low < run.high) run = (cf_run){CF_MAX(run.low - reach, 0), CF_MIN(run.high + reach, n)};
+    run.low = run.low / lanes * lanes;
+    run.high = CF_MIN((run.high + lanes - 1) / lanes * lanes, n);
+    v->busy[0][r] = run;
+  }
+  if (seam) return;
+  widen(box, 1, p->count + 1, v->busy[0], v->busy[1]);
+  if (box->dim == 3)
+    widen(box, 2, p->count + 1, v->busy[1], v->busy[0]);
+  else
+    memcpy(v->busy[0], v->busy[1], (size_t)cf_box_rows(box) * sizeof(cf_run));
+}
+
 static void do_row(const pass *p, const int stage, const int j, const int k) {
   const cf_coupled *l = &p->v->level[0];
+  const cf_run *run = &p->v->busy[0][j + (ptrdiff_t)l->box.n[1] * k];
   if (stage == p->count) {
-    cf_varied_form_row(p->v, j, k, 0, 2, p->x, p->b);
+    cf_varied_form_run(p->v, j, k, run, p->x, p->b);
     return;
   }
-  cf_varied_row o = cf_varied_row_of(p->v, l->run, j, k, p->x);
-  o.b = p->b.at + cf_box_at(&l->box, 0, j, k);
-  const half h = {(cf_real)(p->omega[stage] * p->v->scale), (j + k + stage) & 1};
-  relax_row(l->dim, cf_varied_form_of(p->v), l->box.n[0], &o, &h);
+  if (run->low >= run->high) return;
+  cf_varied_row o = cf_varied_row_of(p->v, run, j, k, p->x);
+  o.b = p->b.at + cf_box_at(&l->box, run->low, j, k);
+  const half h = {(cf_real)(p->omega[stage] * p->v->scale), (run->low + j + k + stage) & 1};
+  relax_row(l->dim, cf_varied_form_of(p->v), run->high - run->low, &o, &h);
 }
 
 /* A plane of the box; in 2D a row. */
@@ -208,6 +274,7 @@ cf_status cf_varied_sweep(cf_varied *v, const cf_cell b, const cf_solve_options 
   cf_varied_set_ghosts(v, x);
   for (bool more = true; more;) {
     plan(&p, odd_seam, fmax(gain, PASS_GAIN));
+    find_busy(&p, threads, seam);
     (seam ? run_in_turn : run_at_once)(&p, threads);
     cf_varied_sums s = cf_varied_add_up(v, 2);
     CF_TRY(cf_varied_judge(v, &s, o, report));
