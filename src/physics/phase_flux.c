@@ -136,11 +136,11 @@ static faces faces_of(const cf_phase *p, const cf_phase_part part, const cf_cell
 
 #define BLOCK 16
 
-/* Whether a block of cells has nothing but 0. */
-CF_KERNEL bool is_empty(const cf_real *block) {
+/* Whether n cells have nothing but 0. */
+CF_KERNEL bool is_empty(const int n, const cf_real *block) {
   cf_real most = 0;
 #pragma omp simd reduction(max : most)
-  for (int i = 0; i < BLOCK; ++i) {
+  for (int i = 0; i < n; ++i) {
     const cf_real size = block[i] < 0 ? -block[i] : block[i];
     most = size > most ? size : most;
   }
@@ -150,8 +150,8 @@ CF_KERNEL bool is_empty(const cf_real *block) {
 /* The row of eta is 0 but for whole blocks from the first to the last in which it is not. */
 CF_CLONES static void fill_span(const int n, const cf_real *row, cf_span *filled) {
   int from = 0, to = n;
-  while (from + BLOCK <= n && is_empty(row + from)) from += BLOCK;
-  while (to - BLOCK >= from && is_empty(row + to - BLOCK)) to -= BLOCK;
+  for (int m; m = CF_MIN(BLOCK, to - from), m > 0 && is_empty(m, row + from);) from += m;
+  for (int m; m = CF_MIN(BLOCK, to - from), m > 0 && is_empty(m, row + to - m);) to -= m;
   filled->from = from;
   filled->to = to;
 }

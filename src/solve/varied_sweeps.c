@@ -158,8 +158,8 @@ CF_KERNEL bool are_empty(const int n, const cf_real *x, const cf_real *b) {
 
 CF_CLONES static cf_run run_of_row(const int n, const cf_real *x, const cf_real *b) {
   int low = 0, high = n;
-  while (low + BLOCK <= n && are_empty(BLOCK, x + low, b + low)) low += BLOCK;
-  while (high - BLOCK >= low && are_empty(BLOCK, x + high - BLOCK, b + high - BLOCK)) high -= BLOCK;
+  for (int m; m = CF_MIN(BLOCK, high - low), m > 0 && are_empty(m, x + low, b + low);) low += m;
+  for (int m; m = CF_MIN(BLOCK, high - low), m > 0 && are_empty(m, x + high - m, b + high - m);) high -= m;
   return (cf_run){low, high};
 }
 
@@ -189,11 +189,10 @@ static void find_busy(const pass *p, const int threads, const bool seam) {
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (ptrdiff_t r = 0; r < cf_box_rows(box); ++r) {
     const ptrdiff_t at = cf_box_row(box, r);
-    cf_run run = seam ? (cf_run){0, n} : run_of_row(n, p->x.at + at, p->b.at + at);
-    if (run.low < run.high) run = (cf_run){CF_MAX(run.low - reach, 0), CF_MIN(run.high + reach, n)};
-    run.low = run.low / lanes * lanes;
-    run.high = CF_MIN((run.high + lanes - 1) / lanes * lanes, n);
-    v->busy[0][r] = run;
+    const cf_run run = seam ? (cf_run){0, n} : run_of_row(n, p->x.at + at, p->b.at + at);
+    const int high = (run.high + reach + lanes - 1) / lanes * lanes;
+    v->busy[0][r] = run.low < run.high ? (cf_run){CF_MAX(run.low - reach, 0) / lanes * lanes, CF_MIN(high, n)}
+                                       : (cf_run){0, 0};
   }
   if (seam) return;
   widen(box, 1, p->count + 1, v->busy[0], v->busy[1]);

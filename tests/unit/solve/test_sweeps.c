@@ -107,6 +107,30 @@ static void threads_do_not_show(void **state) {
     }
 }
 
+/* Two lone cells, one at a wall: the residual of all cells is the one that was found where there is something. */
+static void far_from_what_is_something_nothing_is_missed(void **state) {
+  (void)state;
+  const double tolerance = single ? 1e-5 : 1e-8;
+  for (int dim = 2; dim <= 3; ++dim)
+    for (int s = 0; s < 2; ++s) {
+      const cf_walls walls = walls_of(0);
+      problem q;
+      cf_solve_report report;
+      begin(&q, dim, &walls, 2, s == 0 ? 0.01 : 0.4, true);
+      for (ptrdiff_t row = 0; row < cf_box_rows(&q.g.box); ++row)
+        memset(q.b.at + cf_box_row(&q.g.box, row), 0, (size_t)q.g.box.n[0] * sizeof(cf_real));
+      q.b.at[cf_box_at(&q.g.box, dim == 3 ? 20 : 52, 10, dim == 3 ? 9 : 0)] = 1;
+      q.b.at[cf_box_at(&q.g.box, 0, 17, dim == 3 ? 25 : 0)] = -2;
+      OK(cf_helmholtz_solve(q.A, q.b, &(cf_solve_options){tolerance, 20}, q.x, &report));
+      BELOW(cf_helmholtz_residual(q.A, q.x, q.b), 1.001 * tolerance);
+      CLOSE(cf_helmholtz_residual(q.A, q.x, q.b), report.residual, 0.001 * tolerance);
+      q.b.at[cf_box_at(&q.g.box, 3, dim == 3 ? 1 : 70, dim == 3 ? 20 : 0)] = (cf_real)NAN;
+      assert_int_equal(cf_helmholtz_solve(q.A, q.b, &(cf_solve_options){tolerance, 20}, q.x, &report),
+                       CF_NOT_FINITE);
+      end(&q);
+    }
+}
+
 static void what_is_not_a_number_is_refused(void **state) {
   (void)state;
   const cf_walls walls = walls_of(0);
@@ -124,6 +148,7 @@ static void what_is_not_a_number_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(little_diffusion_takes_one_pass),
                                      cmocka_unit_test(threads_do_not_show),
+                                     cmocka_unit_test(far_from_what_is_something_nothing_is_missed),
                                      cmocka_unit_test(what_is_not_a_number_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
