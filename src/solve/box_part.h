@@ -33,7 +33,7 @@ struct cf_box_solver {
   ptrdiff_t sums;
   double alpha, beta, scale; /* scale: the diagonal in the middle of the finest level */
   double jacobi;             /* spectral radius of Jacobi's iteration on the coarsest level */
-  bool singular, lost;       /* no alpha at all; next to none */
+  bool singular, lost;       /* no alpha at all (in a region: everywhere, and nothing known); next to none */
   bool free_mean;            /* no wall is held, and alpha is small or 0 */
 };
 

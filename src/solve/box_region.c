@@ -100,6 +100,7 @@ cf_status cf_box_solver_set_around(cf_box_solver *f, const cf_helmholtz *A, cons
   f->depth = stiffness <= CF_BOX_SWEEPS_ENOUGH ? 1 : f->varied->depth;
   f->alpha = alpha;
   f->beta = beta;
+  f->singular = f->varied->pockets.count == 1 && f->varied->pockets.single;
   f->scale = alpha + 2 * A->grid.box.dim * beta / (h * h);
   *taken = is_suitable(f, A);
   if (!*taken) return CF_OK;

@@ -203,12 +203,23 @@ static void set_mean(const cf_box_solver *f, const cf_level *l, const cf_cell b,
   it->shift = f->alpha * it->lift;
 }
 
+/* x += amount, where there is an equation. */
+static void lift_all(const cf_box_solver *f, const cf_level *l, const double amount, const cf_cell x) {
+  if (f->varied != NULL)
+    cf_pockets_lift(&f->varied->level[0], amount, x);
+  else
+    cf_level_shift(l, amount, x);
+}
+
 /* Without alpha nothing solves for the mean of b. Mostly it is round-off; if not, it is taken out. */
 static void balance(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b, const cf_cell x,
                     const double tolerance, cf_box_iteration *it) {
-  const double cells = (double)cf_box_cells(&A->grid.box), allowed = MEAN_SHARE * tolerance;
+  const double cells = cells_of(f), allowed = MEAN_SHARE * tolerance;
   if (!f->singular || it->b_sum * it->b_sum / cells <= allowed * allowed * it->bb) return;
-  cf_level_remove_mean(&A->level[0], b);
+  if (f->varied != NULL)
+    cf_pockets_remove_means(&f->varied->pockets, &f->varied->level[0], b);
+  else
+    cf_level_remove_mean(&A->level[0], b);
   cf_box_form(f, A, b, x, it);
 }
 
@@ -222,10 +233,10 @@ static void hold_mean(const cf_box_solver *f, const double cells, const double m
 static void settle_mean(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b, const cf_cell x,
                         const double tolerance, cf_box_iteration *it) {
   const cf_level *l = &A->level[0];
-  const double allowed = MEAN_SHARE * tolerance, cells = (double)cf_box_cells(&l->box);
+  const double allowed = MEAN_SHARE * tolerance, cells = cells_of(f);
   if (it->lift == 0) return;
   if (f->singular && it->lift * it->lift * cells <= allowed * allowed * it->xx) return;
-  cf_level_shift(l, it->lift, x);
+  lift_all(f, l, it->lift, x);
   it->lift = it->shift = 0;
   if (!f->singular) cf_box_form(f, A, b, x, it);
 }
@@ -236,6 +247,23 @@ static bool loiters(const double rr, const int iterations, double lately[WINDOW]
   const double before = lately[iterations % WINDOW];
   lately[iterations % WINDOW] = rr;
   return iterations > WINDOW && rr > pow(LOITERING, 2 * WINDOW) * before;
+}
+
+/* --- starting again ----------------------------------------------------------------------------------- */
+
+/* Whether x is worth keeping as a start: it leaves less than nothing does. */
+static bool is_better_than_nothing(const cf_box_iteration *it) { return it->rr < 0.25 * it->bb; }
+
+/* Back to the start, or to nothing: what is far off is far off in few places, worse to start from than either. */
+static void start_again(const cf_box_solver *f, const bool kept, const double mean, const cf_cell x,
+                        cf_box_iteration *it) {
+  it->lift = 0;
+  if (kept) {
+    cf_varied_copy(f->varied, f->varied->best, x);
+  } else {
+    cf_varied_clear(f->varied, x);
+    if (f->singular) cf_pockets_lift(&f->varied->level[0], mean, x);
+  }
 }
 
 /* --- all of it ---------------------------------------------------------------------------------------- */
@@ -284,9 +312,11 @@ static cf_status run(const cf_box_solver *f, const cf_helmholtz *A, const cf_cel
       cf_varied_clear(f->varied, x);
     else
       cf_level_clear(l, x);
-    if (f->singular) cf_level_shift(l, mean, x);
+    if (f->singular) lift_all(f, l, mean, x);
   }
   bool gains = it.bb > 0;
+  const bool keeps = f->varied != NULL && f->depth > 1 && is_better_than_nothing(&it);
+  if (keeps) cf_varied_copy(f->varied, x, f->varied->best);
   while (gains && slow < SLOW_TIMES && report->iterations < o->max_iterations) {
     if (it.rr <= enough) break;
     const double before = it.rr;
@@ -300,9 +330,7 @@ static cf_status run(const cf_box_solver *f, const cf_helmholtz *A, const cf_cel
   *finished = slow < SLOW_TIMES;
   if (f->varied != NULL) /* conjugate gradients know better than to take rounding for the end */
     *finished = it.bb == 0 || it.rr <= enough || report->iterations >= o->max_iterations;
-  if (!*finished && it.overshoots)
-    cf_varied_copy(f->varied, f->varied->best, x); /* what is far off is far off in few places: worse
-                                                                    * to start from than nothing */
+  if (!*finished && it.overshoots) start_again(f, keeps, mean, x, &it);
   settle_mean(f, A, b, x, o->tolerance, &it);
   report->residual = it.bb > 0 ? sqrt(it.rr / it.bb) : 0;
   const double rounding = CF_MIN(floor_of(f, &it), ROUNDING_PASSES * it.bb);
@@ -318,9 +346,10 @@ cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, 
   report->pockets = pockets->count;
   f->varied->careful = false;
   f->varied->band_sweeps = BAND_SWEEPS;
+  if (f->singular)
+    return run(f, A, b, o, x, report, finished); /* which looks after a single mean by itself */
   cf_pockets_remove_means(pockets, l, b);
   cf_pockets_keep_means(pockets, l, x);
-  if (f->depth > 1) cf_varied_copy(f->varied, x, f->varied->best);
   CF_TRY(run(f, A, b, o, x, report, finished));
   cf_pockets_restore_means(pockets, l, x);
   return CF_OK;

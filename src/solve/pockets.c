@@ -179,6 +179,13 @@ static double sum_of_all(const cf_coupled *l, const cf_cell f) {
   return sum;
 }
 
+/* Cells from p on, before `end`, that have the label of cell p: a run of them has one pocket. */
+static ptrdiff_t alike(const int32_t *label, const ptrdiff_t p, const ptrdiff_t end) {
+  ptrdiff_t to = p + 1;
+  while (to < end && label[to] == label[p]) ++to;
+  return to;
+}
+
 static void sum_up(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
   if (q->single) {
     q->sum[0] = sum_of_all(l, f);
@@ -187,30 +194,44 @@ static void sum_up(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
   for (int v = 0; v < q->count; ++v) q->sum[v] = 0;
   for (ptrdiff_t v = 0; v < l->rows; ++v)
     CF_TILE_ROWS (l, v, j, k)
-      CF_TILE_RUNS (l, v, run)
-        for (int i = run->low; i < run->high; ++i) {
-          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
+      CF_TILE_RUNS (l, v, run) {
+        const ptrdiff_t row = cf_box_at(&l->box, 0, j, k), end = row + run->high;
+        for (ptrdiff_t p = row + run->low, to; p < end; p = to) {
+          to = alike(q->label, p, end);
           const int32_t pocket = q->united[q->label[p]];
-          if (pocket >= 0) q->sum[pocket] += (double)f.at[p];
+          double sum = 0;
+          for (ptrdiff_t c = p; c < to && pocket >= 0; ++c) sum += (double)f.at[c];
+          if (pocket >= 0) q->sum[pocket] += sum;
         }
+      }
 }
 
 /* f -= (sum - kept)/cells on every pocket. */
 static void shift(const cf_pockets *q, const cf_coupled *l, const bool kept, const cf_cell f) {
-  const double by = q->sum[0] / q->cells[0] - (kept ? q->mean[0] : 0); /* where there is one */
+  if (q->single) {
+    cf_pockets_lift(l, (kept ? q->mean[0] : 0) - q->sum[0] / q->cells[0], f);
+    return;
+  }
   CF_PARALLEL_COUPLED (l, v)
     CF_TILE_ROWS (l, v, j, k)
       CF_TILE_RUNS (l, v, run) {
-        const ptrdiff_t row = cf_box_at(&l->box, 0, j, k);
-        if (q->single) {
-          shift_run(run->high - run->low, l->inverse + row + run->low, by, f.at + row + run->low);
-          continue;
-        }
-        for (ptrdiff_t p = row + run->low; p < row + run->high; ++p) {
+        const ptrdiff_t row = cf_box_at(&l->box, 0, j, k), end = row + run->high;
+        for (ptrdiff_t p = row + run->low, to; p < end; p = to) {
+          to = alike(q->label, p, end);
           const int32_t pocket = q->united[q->label[p]];
-          if (pocket >= 0)
-            f.at[p] -= (cf_real)(q->sum[pocket] / q->cells[pocket] - (kept ? q->mean[pocket] : 0));
+          if (pocket < 0) continue;
+          const double by = q->sum[pocket] / q->cells[pocket] - (kept ? q->mean[pocket] : 0);
+          for (ptrdiff_t c = p; c < to; ++c) f.at[c] = (cf_real)((double)f.at[c] - by);
         }
+      }
+}
+
+void cf_pockets_lift(const cf_coupled *l, const double amount, const cf_cell f) {
+  CF_PARALLEL_COUPLED (l, v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run) {
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        shift_run(run->high - run->low, l->inverse + p, -amount, f.at + p);
       }
 }
 

@@ -33,4 +33,7 @@ void cf_pockets_remove_means(const cf_pockets *q, const cf_coupled *l, cf_cell f
 void cf_pockets_keep_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);
 void cf_pockets_restore_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);
 
+/* f += amount on the single pocket that there is. */
+void cf_pockets_lift(const cf_coupled *l, double amount, cf_cell f);
+
 #endif

@@ -122,6 +122,39 @@ CF_KERNEL void last(const int dim, const cf_pass *p, const cf_strip *t, const fl
   }
 }
 
+/* Bytes of both halves in the order of cells. */
+CF_KERNEL void weave(const int pairs, const unsigned char *even, const unsigned char *odd,
+                     unsigned char *line) {
+  for (int m = 0; m < pairs; ++m) {
+    line[2 * m] = even[m];
+    line[2 * m + 1] = odd[m];
+  }
+}
+
+/* The faces of the cells of a piece in their order; NULL where all are inside. */
+CF_KERNEL const unsigned char *faces_of(const cf_segments *g, const piece *q, unsigned char *line) {
+  if (!q->edge) return NULL;
+  const ptrdiff_t even = cf_segment_entry(q->segment, 0, q->strip.from);
+  const ptrdiff_t odd = cf_segment_entry(q->segment, 1, q->strip.from);
+  weave(q->strip.to - q->strip.from, g->faces + even, g->faces + odd, line);
+  return line;
+}
+
+/* The sum of f and of its squares where a cell is inside; faces NULL: everywhere. */
+CF_KERNEL void add_inside(const int n, const cf_real *f, const unsigned char *faces, double *line,
+                          double *sum, double *squares) {
+  const int end = (n + CF_SUM_LANES - 1) / CF_SUM_LANES * CF_SUM_LANES;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) line[i] = faces == NULL || faces[i] & CF_FACES_INSIDE ? (double)f[i] : 0;
+  for (int i = n; i < end; ++i) line[i] = 0;
+  cf_eight all = {0};
+  for (int i = 0; i < end; i += CF_SUM_LANES) all += CF_EIGHT_OF_DOUBLES(line + i);
+  double lane[CF_SUM_LANES];
+  memcpy(lane, &all, sizeof lane);
+  *sum += cf_sum_lanes(lane);
+  *squares += cf_square_sum(end, line);
+}
+
 /* x += gain e on the cells of the piece from its first to its last inside. */
 CF_KERNEL void add(const cf_pass *p, const piece *q, const float *even, const float *odd, float *line) {
   const int from = 2 * q->strip.from, low = CF_MAX(from, q->segment->low);
@@ -137,19 +170,35 @@ CF_KERNEL void add(const cf_pass *p, const piece *q, const float *even, const fl
   for (int i = 0; i < high - low; ++i) x[i] = (cf_real)((double)x[i] + gain * (double)line[low - from + i]);
 }
 
+/* x += lift where a cell is inside, and the sums of what comes of it. */
+CF_KERNEL void lift(const cf_pass *p, const piece *q, const ptrdiff_t room, double *line, double *sum,
+                    double *squares) {
+  const unsigned char *faces = faces_of(p->at->segments, q, (unsigned char *)(line + room));
+  const int n = cf_natural_count(p->at, &q->strip);
+  const double by = p->lift;
+  cf_real *x = p->x + cf_box_at(&p->at->plain->box, 2 * q->strip.from, q->strip.j, q->strip.k);
+  if (by != 0) {
+    CF_ROW_LOOP
+    for (int i = 0; i < n; ++i)
+      x[i] = faces == NULL || faces[i] & CF_FACES_INSIDE ? (cf_real)((double)x[i] + by) : x[i];
+  }
+  if (p->sums_of_x) add_inside(n, x, faces, line, sum, squares);
+}
+
 CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
   const cf_split *s = p->at;
   const float step = (float)p->step;
   float *before = t->scratch;
   piece q;
   CF_FOR_ROWS(j, t) {
-    double squares = 0, products = 0;
+    double squares = 0, products = 0, x = 0, xx = 0;
     int any = 0;
     FOR_PIECES(s, t, j, q) {
       const cf_half red = half_of(dim, s, &q, 0), black = half_of(dim, s, &q, 1);
       const ptrdiff_t at = j * s->row + t->k * s->plane + q.strip.from;
       if (t->next_k >= 0) cf_fetch_x(p, &q.strip, j);
       add(p, &q, s->e + at, s->e + at + s->odd, t->scratch);
+      if (p->sums_of_x || p->lift != 0) lift(p, &q, 2 * s->width + CF_SPLIT_LANES, t->scratch, &x, &xx);
       const int from = q.strip.from, n = q.strip.to - from;
       memcpy(before, red.r + from, (size_t)n * sizeof *before);
       set_images(s, &q, &black, 0);
@@ -168,19 +217,13 @@ CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const 
     double *sums = sums_of(p, t, j);
     sums[CF_SUM_RESIDUAL * p->sums] = squares;
     sums[CF_SUM_RED * p->sums] = products;
+    if (!p->sums_of_x) continue;
+    sums[CF_SUM_X * p->sums] = x;
+    sums[CF_SUM_X2 * p->sums] = xx;
   }
 }
 
 /* --- FORM --------------------------------------------------------------------------------------------- */
-
-/* Bytes of both halves in the order of cells. */
-CF_KERNEL void weave(const int pairs, const unsigned char *even, const unsigned char *odd,
-                     unsigned char *line) {
-  for (int m = 0; m < pairs; ++m) {
-    line[2 * m] = even[m];
-    line[2 * m + 1] = odd[m];
-  }
-}
 
 CF_KERNEL void form_edge(const int dim, const int n, const cf_forming *of, const double coupling,
                          const unsigned char *faces, const unsigned char *held) {
@@ -198,49 +241,42 @@ CF_KERNEL void form_edge(const int dim, const int n, const cf_forming *of, const
   }
 }
 
-/* The sum of the squares of f where a cell is inside; faces NULL: everywhere. */
-CF_KERNEL double square_sum_inside(const int n, const cf_real *f, const unsigned char *faces, double *line) {
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) line[i] = faces == NULL || faces[i] & CF_FACES_INSIDE ? (double)f[i] : 0;
-  for (int i = n; i % CF_SUM_LANES != 0; ++i) line[i] = 0;
-  return cf_square_sum((n + CF_SUM_LANES - 1) / CF_SUM_LANES * CF_SUM_LANES, line);
-}
-
 CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
   const cf_split *s = p->at;
   const cf_segments *g = s->segments;
   const double coupling = p->beta * s->plain->axis[0].lo1[1];
   const ptrdiff_t room = 2 * s->width + CF_SPLIT_LANES;
   double *residual = t->scratch, *line = residual + room;
-  unsigned char *open = (unsigned char *)(line + room), *held = open + room;
+  unsigned char *bytes = (unsigned char *)(line + room), *held = bytes + room;
   piece q;
   CF_FOR_ROWS(j, t) {
-    double rr = 0, bb = 0, xx = 0;
+    double rr = 0, b = 0, bb = 0, x = 0, xx = 0;
     int any = 0;
     FOR_PIECES(s, t, j, q) {
       const int n = cf_natural_count(s, &q.strip), pairs = q.strip.to - q.strip.from;
       const ptrdiff_t to = j * s->row + t->k * s->plane + q.strip.from;
       const cf_forming f = cf_forming_of(dim, p, &q.strip, j);
+      const unsigned char *open = faces_of(g, &q, bytes);
       if (q.edge) {
-        const ptrdiff_t even = cf_segment_entry(q.segment, 0, q.strip.from);
-        const ptrdiff_t odd = cf_segment_entry(q.segment, 1, q.strip.from);
-        weave(pairs, g->faces + even, g->faces + odd, open);
-        weave(pairs, g->held + even, g->held + odd, held);
+        weave(pairs, g->held + cf_segment_entry(q.segment, 0, q.strip.from),
+              g->held + cf_segment_entry(q.segment, 1, q.strip.from), held);
         form_edge(dim, n, &f, coupling, open, held);
       } else {
         cf_form_row(dim, n, &f);
       }
       for (int i = n; i < 2 * pairs; ++i) residual[i] = 0;
       rr += cf_square_sum(2 * pairs, residual);
-      bb += square_sum_inside(n, f.b, q.edge ? open : NULL, line);
-      xx += square_sum_inside(n, f.x, q.edge ? open : NULL, line);
+      add_inside(n, f.b, open, line, &b, &bb);
+      add_inside(n, f.x, open, line, &x, &xx);
       cf_split_scaled(pairs, 1 / p->scale, residual, s->r + to, s->r + to + s->odd);
       any = 1;
     }
     if (!any) continue;
     double *sums = sums_of(p, t, j);
     sums[CF_SUM_RESIDUAL * p->sums] = rr;
+    sums[CF_SUM_B * p->sums] = b;
     sums[CF_SUM_B2 * p->sums] = bb;
+    sums[CF_SUM_X * p->sums] = x;
     sums[CF_SUM_X2 * p->sums] = xx;
   }
 }
