@@ -82,11 +82,14 @@ sanitize: setup-checks
 VALGRIND = valgrind -q --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite \
   --show-leak-kinds=definite --suppressions=$(CURDIR)/tests/memory/known.supp
 
+# They would work for more than five minutes each, thirty times what they take alone; the sanitizers have them.
+VALGRIND_LONG = unit_(session_session|solve_(iterations|region)|app_sweep|model_gel|render_studio|physics_advect_(schemes|accuracy))
+
 valgrind: setup-checks
 	@$(MAKE) --no-print-directory configure
 	@cmake --build $(BUILD) --parallel $(JOBS)
 	@mkdir -p $(BUILD)/valgrind
-	@cd $(BUILD) && ls tests | grep -E '^(unit|memory)_' | grep -v _single | \
+	@cd $(BUILD) && ls tests | grep -E '^(unit|memory)_' | grep -vE '_single|^$(VALGRIND_LONG)$$' | \
 	  OMP_NUM_THREADS=2 OMP_WAIT_POLICY=passive xargs -P$(JOBS) -I{} sh -c \
 	  '$(VALGRIND) tests/{} >valgrind/{} 2>&1 && echo "{}: clean" || { cat valgrind/{}; exit 255; }'
 

@@ -138,6 +138,7 @@ cf_status cf_movie_command(cf_arguments *a) {
   film f = {.fps = a->fps > 0 ? a->fps : 24};
   cf_showing s;
   cf_path path;
+  CF_TRY(cf_arguments_check_file(a, ".mp4"));
   CF_TRY(cf_showing_open(&s, a->operand[0], a));
   const int64_t from = 0, to = s.frames - 1;
   cf_stop_watch();

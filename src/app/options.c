@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/mem.h"
 #include "base/param.h"
@@ -310,4 +311,11 @@ cf_status cf_arguments_read(cf_arguments *a, const int argc, char **argv, const 
 void cf_arguments_clear(cf_arguments *a) {
   cf_free(a->set);
   a->set = a->grid = NULL;
+}
+
+cf_status cf_arguments_check_file(const cf_arguments *a, const char *ending) {
+  const size_t length = a->output != NULL ? strlen(a->output) : 0, end = strlen(ending);
+  if (a->output == NULL || (length > end && strcasecmp(a->output + length - end, ending) == 0)) return CF_OK;
+  return cf_fail(CF_BAD_USAGE, "-o %.200s: the name must end in %s, as what is written there", a->output,
+                 ending);
 }

@@ -100,6 +100,10 @@ typedef struct cf_arguments {
 cf_status cf_arguments_read(cf_arguments *a, int argc, char **argv, unsigned allowed);
 void cf_arguments_clear(cf_arguments *a);
 
+/* That the file to write, where -o names one, ends as what is written there does (".png"): a slip of the hand would else
+ * write over a scene. CF_BAD_USAGE. */
+cf_status cf_arguments_check_file(const cf_arguments *a, const char *ending);
+
 /* "90 min" in s; a plain number is in s. CF_BAD_USAGE. */
 cf_status cf_duration_read(const char *text, double *seconds);
 

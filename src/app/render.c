@@ -115,6 +115,7 @@ static cf_status render_several(cf_showing *s, const int count, const cf_argumen
 cf_status cf_render_command(cf_arguments *a) {
   cf_showing *s;
   int open = 0;
+  CF_TRY(cf_arguments_check_file(a, ".png"));
   CF_TRY(CF_NEW(&s, a->operands));
   cf_status status = CF_OK;
   for (; open < a->operands && status == CF_OK; ++open)

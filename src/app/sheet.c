@@ -176,6 +176,7 @@ cf_status cf_sheet_write(const cf_sheet *s) {
 
 cf_status cf_sheet_command(cf_arguments *a) {
   if (a->output == NULL) return cf_fail(CF_BAD_USAGE, "sheet: -o FILE.png is missing");
+  CF_TRY(cf_arguments_check_file(a, ".png"));
   const cf_sheet s = {.count = a->operands,
                       .folder = (const char *const *)a->operand,
                       .columns = a->columns,

@@ -45,7 +45,8 @@ static cf_status read_stream(cf_config *config, FILE *stream, const char *path) 
 }
 
 static cf_status read_file(cf_config *config, const char *path) {
-  if (path[0] == '\0') return cf_fail(CF_BAD_SCENE, "the name of the scene is empty\ntry: cattaneo examples");
+  if (path[0] == '\0')
+    return cf_fail(CF_BAD_SCENE, "'': error: the name of the scene is empty\ntry: cattaneo examples");
   FILE *stream = fopen(path, "rbe");
   if (stream == NULL) return fail_file(path, errno == ENOENT ? "there is no such file" : strerror(errno));
   const cf_status status = read_stream(config, stream, path);

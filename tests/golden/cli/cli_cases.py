@@ -338,6 +338,10 @@ class Pictures(Case):
         self.refuses("render", "ring", "--style", "inc", says="did you mean ink?")
         self.refuses("render", "ring", "--field", "ph", says="phi")
         self.refuses("render", "ring", "--size", "9x", says="--size")
+        before = (self.folder / "ring/run.yaml").read_bytes()
+        for words in (("render", "ring"), ("sheet", "ring", "ring"), ("movie", "ring")):
+            self.refuses(*words, "-o", "ring/run.yaml", says="the name must end in .")
+        self.assertEqual((self.folder / "ring/run.yaml").read_bytes(), before)
 
     def test_a_movie_is_whole_or_not_there(self):
         self.run_ring()

@@ -164,6 +164,13 @@ static void what_is_no_folder_is_refused(void **state) {
   assert_int_equal(cf_folder_create(&f, "", false), CF_BAD_USAGE);
 }
 
+static void a_folder_is_no_name_for_a_file(void **state) {
+  cf_draft d;
+  (void)state;
+  assert_int_equal(cf_draft_begin(&d, "pictures/"), CF_BAD_ARGUMENT);
+  assert_says("pictures/: names a folder, not a file");
+}
+
 static void later_frames_are_cut(void **state) {
   cf_folder f;
   int count;
@@ -256,6 +263,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(a_killed_run_leaves_no_lock, setup, teardown),
       cmocka_unit_test_setup_teardown(going_on_needs_a_run, setup, teardown),
       cmocka_unit_test_setup_teardown(what_is_no_folder_is_refused, setup, teardown),
+      cmocka_unit_test(a_folder_is_no_name_for_a_file),
       cmocka_unit_test_setup_teardown(later_frames_are_cut, setup, teardown),
       cmocka_unit_test_setup_teardown(a_draft_replaces_the_file_only_when_kept, setup, teardown),
       cmocka_unit_test_setup_teardown(checksum_depends_on_bytes_not_on_pieces, setup, teardown),

@@ -86,7 +86,7 @@ static void refused(const char *path, const char *message) {
 static void scene_that_is_not_there_is_an_error(void **state) {
   (void)state;
   refused("no/such.yaml", "no/such.yaml: error: there is no such file\ntry: cattaneo examples");
-  refused("", "the name of the scene is empty\ntry: cattaneo examples");
+  refused("", "'': error: the name of the scene is empty\ntry: cattaneo examples");
 }
 
 static void scene_that_is_a_folder_is_an_error(void **state) {
