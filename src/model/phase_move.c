@@ -58,12 +58,11 @@ cf_status cf_crystal_move(cf_crystal *m, const double t, const double dt, cf_ste
   if (!m->moves) return CF_OK;
   if (m->velocity_in_time) CF_TRY(cf_crystal_set_flow(m, t + dt / 2));
   CF_TRY(cf_advect_begin(m->carry, t, dt));
-  CF_TRY(cf_advect_cell(m->carry, &m->carried_T, m->y.T, &T));
-  if (m->y.w.at != NULL) CF_TRY(cf_advect_cell(m->carry, &m->carried_memory, m->y.w, NULL));
-  if (m->scene->phase.carried == CF_SCENE_PHASE_BOTH) {
-    CF_TRY(cf_advect_cell(m->carry, &m->carried_eta, m->y.eta, &eta));
-    if (m->y.r.at != NULL) CF_TRY(cf_advect_cell(m->carry, &m->carried_memory, m->y.r, NULL));
-  }
+  const cf_carried warm[] = {{&m->carried_T, m->y.T, &T}, {&m->carried_memory, m->y.w, NULL}};
+  const cf_carried solid[] = {{&m->carried_eta, m->y.eta, &eta}, {&m->carried_memory, m->y.r, NULL}};
+  CF_TRY(cf_advect_cells(m->carry, warm, m->y.w.at != NULL ? 2 : 1));
+  if (m->scene->phase.carried == CF_SCENE_PHASE_BOTH)
+    CF_TRY(cf_advect_cells(m->carry, solid, m->y.r.at != NULL ? 2 : 1));
   m->dt_before = 0; /* T - K eta has moved: nothing to extrapolate from */
   cf_ledger_add(&m->heat, (T.entered - T.left) - m->params.latent * (eta.entered - eta.left));
   return CF_OK;

@@ -150,6 +150,7 @@ cf_status cf_phase_create(cf_phase **p, const cf_grid *g, const cf_phase_walls *
   if (places != NULL) fresh->places = *places;
   cf_status s = CF_NEW(&fresh->sums, 3 * cf_box_rows(&g->box));
   if (s == CF_OK) s = CF_NEW(&fresh->filled, cf_box_rows(&g->box));
+  if (s == CF_OK) s = CF_NEW(&fresh->next_filled, cf_box_rows(&g->box));
   if (s == CF_OK) s = make(fresh, &held, params, implicit);
   if (s != CF_OK) {
     cf_phase_destroy(fresh);
@@ -173,6 +174,7 @@ void cf_phase_destroy(cf_phase *p) {
   cf_free(p->room);
   cf_free(p->sums);
   cf_free(p->filled);
+  cf_free(p->next_filled);
   cf_free(p);
 }
 

@@ -145,9 +145,9 @@ static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start,
                   void *context) {
   const stage *s = context;
   const cf_box *box = &p->grid->box;
-  (void)r;
   if (rows->busy.from < rows->busy.to) react(p, rows, s, start);
   phase_of_row(p, rows, s, start);
+  cf_phase_note_filled(p, r, s->out->eta.at + start);
   const heat_row heat = {{box->stride[0], box->stride[1], box->stride[2]},
                          rows->rate,
                          s->in->T.at,
@@ -217,6 +217,10 @@ static void run_stage(cf_phase *p, const double t, const double keep, stage *s, 
   const bool paper = q->form == CF_PHASE_PAPER && p->has_r; /* without a memory the forms are one */
   if (paper) cf_phase_each_row(p, CF_PHASE_X_1, s->in->eta, keep_X_1, NULL);
   cf_phase_each_row(p, paper ? CF_PHASE_X_2 : CF_PHASE_X, s->in->eta, visit, s);
+  cf_span *const spans = p->filled;
+  p->filled = p->next_filled;
+  p->next_filled = spans;
+  p->known_of = s->out->eta.at;
 }
 
 static void three_stages(cf_phase *p, const double t, const double dt, const cf_phase_explicit *how,
@@ -248,6 +252,7 @@ cf_status cf_phase_step_explicit(cf_phase *p, const double t, const double dt, c
                                  const cf_phase_state *y, double *heat_in) {
   if (how->substeps < 1) return cf_fail(CF_BAD_ARGUMENT, "%d substeps: must be at least 1", how->substeps);
   const double sub = dt / how->substeps;
+  p->known_of = NULL; /* anything may have moved eta since the last step */
   const cf_phase_state *now = y, *next = &p->stage[0];
   for (int i = 0; i < how->substeps; ++i) {
     if (how->order == 3) {
@@ -261,6 +266,7 @@ cf_status cf_phase_step_explicit(cf_phase *p, const double t, const double dt, c
     next = now;
     now = done;
   }
+  p->known_of = NULL;
   if (now == y) return CF_OK;
   copy_cell(p, now->eta, y->eta);
   copy_cell(p, now->r, y->r);

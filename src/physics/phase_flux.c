@@ -163,15 +163,21 @@ static bool has_held_wall(const cf_phase *p) {
   return false;
 }
 
+static void note(const cf_phase *p, const cf_real *row, cf_span *filled) {
+  const int n = p->grid->box.n[0];
+  if (has_held_wall(p))
+    *filled = (cf_span){0, n};
+  else
+    fill_span(n, row, filled);
+}
+
+void cf_phase_note_filled(const cf_phase *p, const ptrdiff_t r, const cf_real *row) {
+  note(p, row, &p->next_filled[r]);
+}
+
 void cf_phase_find_filled(const cf_phase *p, const cf_cell eta) {
   const cf_box *box = &p->grid->box;
-  const bool held = has_held_wall(p);
-  CF_PARALLEL_ROWS (box, p->grid->threads, r) {
-    if (held)
-      p->filled[r] = (cf_span){0, box->n[0]};
-    else
-      fill_span(box->n[0], eta.at + cf_box_row(box, r), &p->filled[r]);
-  }
+  CF_PARALLEL_ROWS (box, p->grid->threads, r) note(p, eta.at + cf_box_row(box, r), &p->filled[r]);
 }
 
 static int inside(const cf_phase *p, const int a, const int i) {
@@ -304,7 +310,7 @@ void cf_phase_each_row(const cf_phase *p, const cf_phase_part part, const cf_cel
   const int threads = CF_MIN(CF_MIN(p->threads, cf_sweep_threads(box, p->grid->threads)), outer);
   const faces f = faces_of(p, part, eta);
   faces_row *const row = faces_row_of(box->dim, p->law.facets, p->places.strength.at != NULL);
-  cf_phase_find_filled(p, eta);
+  if (p->known_of != eta.at) cf_phase_find_filled(p, eta);
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (int t = 0; t < threads; ++t) {
     slab s = {p, &p->rows[t], f, row, visit, context};

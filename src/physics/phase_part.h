@@ -47,9 +47,11 @@ struct cf_phase {
   cf_helmholtz *A;         /* of implicit steps, and their fields */
   cf_cell x, b, alpha, X;
   cf_face beta;
-  double beta_is;  /* which number beta stands for */
-  double *sums;    /* 3 a row of the box */
-  cf_span *filled; /* where eta is not 0, per row of the box */
+  double beta_is;          /* which number beta stands for */
+  double *sums;            /* 3 a row of the box */
+  cf_span *filled;         /* where eta is not 0, per row of the box */
+  cf_span *next_filled;    /* the same of what a stage makes */
+  const cf_real *known_of; /* the eta that `filled` is right for within a step; NULL: none */
 };
 
 /* --- the divergence --------------------------------------------------------------------------------------- */
@@ -64,6 +66,7 @@ void cf_phase_each_row(const cf_phase *p, cf_phase_part part, cf_cell eta, cf_ph
 /* Looks where in each row eta is not 0. Then X and f are 0 outside the busy part of row (j, k): what has something in it
  * or next to it. With a wall that is held at something the whole row is busy. */
 void cf_phase_find_filled(const cf_phase *p, cf_cell eta);
+void cf_phase_note_filled(const cf_phase *p, ptrdiff_t r, const cf_real *row); /* row r of what is next */
 cf_span cf_phase_busy(const cf_phase *p, int j, int k);
 
 /* --- rows ------------------------------------------------------------------------------------------------- */
