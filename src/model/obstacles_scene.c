@@ -196,6 +196,8 @@ static cf_status tell(const cf_obstacles *o, const cf_page *page) {
   if (o->solid == 0 && !o->changes)
     page->warn(page->context,
                "no cell has its middle in an obstacle: are they outside the domain, or thinner than a cell?");
+  if (o->solid == cf_box_cells(&o->grid->box) && !o->changes)
+    page->warn(page->context, "obstacles fill the whole box: no cell is left to compute");
   return CF_OK;
 }
 

@@ -155,6 +155,14 @@ static void check_warns_of_sources_outside_the_box(void **state) {
       "sources.1 is outside the box");
 }
 
+static void check_warns_of_obstacles_nowhere_and_everywhere(void **state) {
+  (void)state;
+  has(PAGE("obstacles=[{shape: sphere, center: [5, 5], radius: 0.1}]"),
+      "no cell has its middle in an obstacle");
+  has(PAGE("obstacles=[{shape: sphere, center: [0, 0], radius: 9}]"), "no cell is left to compute");
+  assert_null(strstr(PAGE("obstacles=[{shape: sphere, center: [0, 0], radius: 0.5}]"), "no cell"));
+}
+
 static void check_survives_any_failed_allocation(void **state) {
   (void)state;
   cf_scene *scene = scene_of(0, NULL);
@@ -182,6 +190,7 @@ int main(void) {
       cmocka_unit_test(check_knows_scalars_apart),
       cmocka_unit_test(check_finds_what_only_a_grid_can_tell),
       cmocka_unit_test(check_warns_of_sources_outside_the_box),
+      cmocka_unit_test(check_warns_of_obstacles_nowhere_and_everywhere),
       cmocka_unit_test(check_survives_any_failed_allocation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
