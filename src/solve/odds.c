@@ -176,7 +176,7 @@ static cf_status odds_room(cf_coupled *l, const ptrdiff_t count) {
 
 /* What was found, in the order of blocks: it must not depend on what was made anew, for sums follow it. */
 static cf_status take_odds(cf_coupled *l, odd_list *o) {
-  qsort(o->at, (size_t)o->count, sizeof *o->at, in_order);
+  if (o->count > 0) qsort(o->at, (size_t)o->count, sizeof *o->at, in_order);
   CF_TRY(odds_room(l, o->count));
   l->odds = o->count;
   int32_t islands = 0;
