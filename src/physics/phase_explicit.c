@@ -75,11 +75,6 @@ static phase_row *const phase_rows[3][2] = {{phase_row_PLAIN, masked_row_PLAIN},
                                             {phase_row_STABLE, masked_row_STABLE},
                                             {phase_row_PAPER, masked_row_PAPER}};
 
-CF_CLONES static void add_row(const int n, const cf_real weight, const cf_real *x, cf_real *y) {
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) y[i] += weight * x[i];
-}
-
 CF_CLONES static void divide_row(const int n, const cf_real *x, cf_real *y) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) y[i] /= x[i];
@@ -124,7 +119,7 @@ static void react(const cf_phase *p, cf_phase_rows *rows, const stage *s, const 
   cf_phase_react f = cf_phase_react_of(p, rows, n, s->in->eta.at, start + from);
   f.T = s->in->T.at + start + from;
   cf_phase_react_row(n, &f);
-  add_row(n, 1, rows->react, rows->div + from);
+  cf_phase_add_row(n, 1, rows->react, rows->div + from);
   if (!p->p.karma_rappel) return;
   cf_phase_A2_row(p, n, s->in->eta.at, start + from, rows->A2);
   divide_row(n, rows->A2, rows->div + from);
@@ -158,7 +153,7 @@ static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start,
                          s->out->w.at,
                          s};
   heat_loop_by_form(box->dim, p->has_w, box->n[0], &heat, start);
-  if (s->W != NULL) add_row(box->n[0], s->d, s->W + start, s->out->T.at + start);
+  if (s->W != NULL) cf_phase_add_row(box->n[0], s->d, s->W + start, s->out->T.at + start);
 }
 
 static void keep_X_1(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start, const ptrdiff_t r,

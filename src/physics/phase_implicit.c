@@ -112,11 +112,6 @@ CF_CLONES static void idle_row(const int n, const equation *q, const ptrdiff_t s
   }
 }
 
-CF_CLONES static void add_row(const int n, const cf_real factor, const cf_real *from, cf_real *to) {
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) to[i] += factor * from[i];
-}
-
 /* J and f of the busy part of the row, in rows->x and rows->react. */
 static void react(const cf_phase *p, cf_phase_rows *rows, const stage *s, const ptrdiff_t start) {
   const int from = rows->busy.from, n = rows->busy.to - from;
@@ -155,7 +150,7 @@ static void visit(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t start,
   idle_row(all - to, &q, start + to);
   q.tau = rows->rate + from, q.X = rows->div + from;
   if (from < to) equation_row_by_dim(dim, to - from, &q, start + from);
-  if (s->r.at != NULL) add_row(all, (cf_real)s->m, s->r.at + start, p->b.at + start);
+  if (s->r.at != NULL) cf_phase_add_row(all, (cf_real)s->m, s->r.at + start, p->b.at + start);
 }
 
 static void fill_row(const int n, const cf_real value, cf_real *to) {

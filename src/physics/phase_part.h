@@ -71,6 +71,9 @@ cf_span cf_phase_busy(const cf_phase *p, int j, int k);
 
 /* --- rows ------------------------------------------------------------------------------------------------- */
 
+/* y += weight x. */
+void cf_phase_add_row(int n, cf_real weight, const cf_real *x, cf_real *y);
+
 /* react[i] = f. With `lean` T is H, the temperature in psi H + K eta, and lean[i] the slope min(df/deta, 0) of f
  * with that taken along, for implicit steps. */
 typedef struct cf_phase_react {

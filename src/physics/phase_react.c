@@ -6,6 +6,11 @@
 #include "physics/phase_part.h"
 #include "stencil/arctan.h"
 
+CF_CLONES void cf_phase_add_row(const int n, const cf_real weight, const cf_real *x, cf_real *y) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) y[i] += weight * x[i];
+}
+
 /* --- f ---------------------------------------------------------------------------------------------------- */
 
 CF_KERNEL void atan_loop(const int directed, const int noisy, const int n, const cf_phase_react *f) {
