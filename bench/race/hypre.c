@@ -21,13 +21,13 @@ typedef struct structured {
   HYPRE_StructMatrix A;
   HYPRE_StructVector x, b;
   HYPRE_StructSolver solver, cycle;
-  double *values; /* a matrix row a cell; later a vector */
+  double *values, *matrix; /* a vector; the diagonal and high couplings, cell by cell */
   int low[3], high[3];
 } structured;
 
 /* The diagonal and the couplings to the high neighbours (the matrix is symmetric). */
-static void fill_values(const cf_bench_case *c, double *values) {
-  const double alpha = isinf(c->sigma) ? 0 : 1, beta = isinf(c->sigma) ? 1 : c->sigma;
+static void fill_values(const cf_bench_case *c, const cf_bench_system *s, double *values) {
+  const double alpha = isinf(c->sigma) ? 0 : 1, number = isinf(c->sigma) ? 1 : c->sigma;
   double *v = values;
   for (int k = 0; k < c->n[2]; ++k)
     for (int j = 0; j < c->n[1]; ++j)
@@ -37,8 +37,11 @@ static void fill_values(const cf_bench_case *c, double *values) {
         for (int a = 0; a < c->dim; ++a) {
           const bool p = c->walls[a] == 'p', first = at[a] == 0, last = at[a] == c->n[a] - 1;
           const double wall = c->walls[a] == 'o' ? 2 : 0;
-          v[0] += beta * ((!first || p ? 1 : wall) + (!last || p ? 1 : wall));
-          v[1 + a] = !last || p ? -beta : 0;
+          const cf_real *beta = c->varied ? s->beta.at[a] + cf_box_at(&s->grid.box, i, j, k) : NULL;
+          const double low = beta != NULL ? (double)beta[0] : number;
+          const double high = beta != NULL ? (double)beta[s->grid.box.stride[a]] : number;
+          v[0] += low * (!first || p ? 1 : wall) + high * (!last || p ? 1 : wall);
+          v[1 + a] = !last || p ? -high : 0;
         }
       }
 }
@@ -61,17 +64,22 @@ static void make_solver(structured *h, const cf_bench_case *c) {
   HYPRE_StructPCGSetup(h->solver, h->A, h->b, h->x);
 }
 
+static void destroy_matrix(structured *h) {
+  HYPRE_StructPCGDestroy(h->solver);
+  HYPRE_StructPFMGDestroy(h->cycle);
+  HYPRE_StructMatrixDestroy(h->A);
+}
+
 static void structured_destroy(void *made) {
   structured *h = made;
   if (h == NULL) return;
-  HYPRE_StructPCGDestroy(h->solver);
-  HYPRE_StructPFMGDestroy(h->cycle);
+  destroy_matrix(h);
   HYPRE_StructVectorDestroy(h->x);
   HYPRE_StructVectorDestroy(h->b);
-  HYPRE_StructMatrixDestroy(h->A);
   HYPRE_StructStencilDestroy(h->stencil);
   HYPRE_StructGridDestroy(h->grid);
   cf_free(h->values);
+  cf_free(h->matrix);
   cf_free(h);
 }
 
@@ -104,30 +112,37 @@ static void begin(void) {
   atexit(finish);
 }
 
-static cf_status structured_create(void **made, const cf_bench_case *c, const cf_bench_system *s) {
-  (void)s;
-  *made = NULL;
+/* The matrix from its values, and the solver. */
+static void make_matrix(structured *h, const cf_bench_case *c) {
   int entries[ENTRIES] = {0, 1, 2, 3};
+  HYPRE_StructMatrixCreate(MPI_COMM_WORLD, h->grid, h->stencil, &h->A);
+  HYPRE_StructMatrixSetSymmetric(h->A, 1);
+  HYPRE_StructMatrixInitialize(h->A);
+  HYPRE_StructMatrixSetBoxValues(h->A, h->low, h->high, c->dim + 1, entries, h->matrix);
+  HYPRE_StructMatrixAssemble(h->A);
+  make_solver(h, c);
+}
+
+static cf_status structured_create(void **made, const cf_bench_case *c, const cf_bench_system *s) {
+  const ptrdiff_t cells = (ptrdiff_t)c->n[0] * c->n[1] * c->n[2];
+  *made = NULL;
   begin();
   structured *h;
   CF_TRY(CF_NEW(&h, 1));
-  const cf_status status = CF_NEW(&h->values, (ptrdiff_t)c->n[0] * c->n[1] * c->n[2] * (c->dim + 1));
+  cf_status status = CF_NEW(&h->values, cells);
+  if (status == CF_OK) status = CF_NEW(&h->matrix, cells * (c->dim + 1));
   if (status != CF_OK) {
+    cf_free(h->values);
     cf_free(h);
     return status;
   }
   make_grid(h, c);
-  HYPRE_StructMatrixCreate(MPI_COMM_WORLD, h->grid, h->stencil, &h->A);
-  HYPRE_StructMatrixSetSymmetric(h->A, 1);
-  HYPRE_StructMatrixInitialize(h->A);
-  fill_values(c, h->values);
-  HYPRE_StructMatrixSetBoxValues(h->A, h->low, h->high, c->dim + 1, entries, h->values);
-  HYPRE_StructMatrixAssemble(h->A);
   HYPRE_StructVectorCreate(MPI_COMM_WORLD, h->grid, &h->x);
   HYPRE_StructVectorInitialize(h->x);
   HYPRE_StructVectorCreate(MPI_COMM_WORLD, h->grid, &h->b);
   HYPRE_StructVectorInitialize(h->b);
-  make_solver(h, c);
+  fill_values(c, s, h->matrix);
+  make_matrix(h, c);
   *made = h;
   return CF_OK;
 }
@@ -144,7 +159,9 @@ static cf_status structured_solve(void *made, const cf_bench_case *c, const cf_b
   copy_in(c, s, h->values);
   HYPRE_StructVectorSetBoxValues(h->b, h->low, h->high, h->values);
   HYPRE_StructVectorSetConstantValues(h->x, 0);
+  if (c->set_up) destroy_matrix(h);
   const double begun = cf_bench_clock(c->own_time);
+  if (c->set_up) make_matrix(h, c);
   HYPRE_StructPCGSolve(h->solver, h->A, h->b, h->x);
   *seconds = cf_bench_clock(c->own_time) - begun;
   HYPRE_StructPCGGetNumIterations(h->solver, iterations);

@@ -108,11 +108,28 @@ double cf_bench_resident(void) {
   return (double)resident * (double)sysconf(_SC_PAGESIZE);
 }
 
-static cf_status set_coefficients(const cf_bench_system *s, const cf_bench_case *c) {
+/* `other`: some that have nothing in common with them. */
+static cf_status set_coefficients(const cf_bench_system *s, const cf_bench_case *c, const bool other) {
   const bool poisson = isinf(c->sigma);
-  return cf_helmholtz_set(
-      s->A,
-      &(cf_coefficients){.alpha = poisson ? 0 : 1, .beta = poisson ? 1 : c->sigma, .region = s->region});
+  return cf_helmholtz_set(s->A, &(cf_coefficients){.alpha = (poisson ? 0 : 1) + (other ? 0.5 : 0),
+                                                   .beta = poisson ? 1 : c->sigma,
+                                                   .beta_at = c->varied ? &s->beta : NULL,
+                                                   .region = s->region});
+}
+
+/* Faces of axis a, those of the last wall as well. */
+static void fill_beta(const cf_bench_case *c, const cf_grid *g, const int a, cf_real *beta) {
+  const cf_box *box = &g->box;
+  const double pi = 3.14159265358979, base = isinf(c->sigma) ? 1 : c->sigma;
+  for (int k = 0; k < box->n[2] + (a == 2); ++k)
+    for (int j = 0; j < box->n[1] + (a == 1); ++j)
+      for (int i = 0; i < box->n[0] + (a == 0); ++i) {
+        const double wave =
+            sin(2 * pi * i / box->n[0]) * sin(4 * pi * j / box->n[1]) * cos(2 * pi * k / box->n[2]);
+        const uint64_t place = ((uint64_t)k * 4096 + (uint64_t)j) * 4096 + (uint64_t)i;
+        beta[cf_box_at(box, i, j, k)] =
+            (cf_real)(base * exp(wave) * (0.5 + cf_random(2, (uint64_t)a, 0, place)));
+      }
 }
 
 static cf_status system_make(cf_bench_system *s, const cf_bench_case *c) {
@@ -130,7 +147,9 @@ static cf_status system_make(cf_bench_system *s, const cf_bench_case *c) {
     s->cells = cf_region_inside(s->region);
   }
   CF_TRY(s->tiles != NULL ? cf_tiles_cell_create(s->tiles, &s->x) : cf_cell_create(&s->x, &s->grid.box));
-  return set_coefficients(s, c);
+  if (c->varied) CF_TRY(cf_face_create(&s->beta, &s->grid.box));
+  for (int a = 0; a < c->dim && c->varied; ++a) fill_beta(c, &s->grid, a, s->beta.at[a]);
+  return set_coefficients(s, c, false);
 }
 
 cf_status cf_bench_system_create(cf_bench_system *s, const cf_bench_case *c) {
@@ -146,6 +165,7 @@ void cf_bench_system_destroy(cf_bench_system *s) {
   cf_tiles_destroy(s->tiles);
   cf_cell_destroy(&s->x, &s->grid.box);
   cf_cell_destroy(&s->b, &s->grid.box);
+  cf_face_destroy(&s->beta, &s->grid.box);
   *s = (cf_bench_system){0};
 }
 
@@ -168,8 +188,9 @@ cf_status cf_bench_system_solve(const cf_bench_system *s, const cf_bench_case *c
   else
     CF_PARALLEL_ROWS (box, s->grid.threads, r)
       memset(s->x.at + cf_box_row(box, r), 0, (size_t)box->n[0] * sizeof(cf_real));
+  if (c->set_up) CF_TRY(set_coefficients(s, c, true));
   const double begun = cf_bench_clock(c->own_time);
-  if (c->set_up) CF_TRY(set_coefficients(s, c));
+  if (c->set_up) CF_TRY(set_coefficients(s, c, false));
   CF_TRY(cf_helmholtz_solve(s->A, s->b, &(cf_solve_options){c->tolerance, 200}, s->x, report));
   *seconds = cf_bench_clock(c->own_time) - begun;
   return CF_OK;

@@ -25,7 +25,8 @@ typedef struct cf_bench_case {
   const char *walls; /* a letter an axis: i insulated, o open, p periodic; NULL: all insulated */
   cf_bench_side side;
   const char *region; /* of bench_region.h; NULL: the whole box */
-  bool set_up;        /* the coefficients are set anew before every solve, and that is timed too */
+  bool varied;        /* beta is a field: sigma times factors from 0.2 to 4, smooth and noisy */
+  bool set_up;        /* other coefficients are set before every solve, then these, which is timed too */
   bool
       own_time; /* seconds are those of the calling thread alone: for one thread where others want the machine */
 } cf_bench_case;
@@ -36,6 +37,7 @@ typedef struct cf_bench_system {
   cf_region *region;
   cf_tiles *tiles;
   cf_cell x, b;
+  cf_face beta;    /* of a varied case */
   ptrdiff_t cells; /* that have an equation */
   double resident; /* bytes that this process held when only b was there */
 } cf_bench_system;
