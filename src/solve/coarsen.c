@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "solve/coarsen.h"
 
+#include <string.h>
+
 #include "solve/block.h"
 #include "solve/odds.h"
 
@@ -66,44 +68,6 @@ static unsigned char fill_axis(const cf_coupled *l, const cf_block *b, const int
   return l->coarsened[a] ? as_byte(through->after * through->both) : 0;
 }
 
-/* Whether, away from the walls of the box, the cells of a block and those beside it have no closed face, and all faces that
- * count have one coupling along each axis: nearly always so. */
-static bool is_plain(const cf_coupled *l, const cf_block *b) {
-  if (b->count != 8 || !cf_coupled_has(l, b->p[0])) return false;
-  for (int a = 0; a < 3; ++a)
-    if (b->at[0][a] < 1 || b->at[0][a] + 3 >= l->box.n[a]) return false;
-  for (int a = 0; a < 3; ++a) {
-    const ptrdiff_t s = l->box.stride[a];
-    const float c0 = l->c[a][b->p[0]];
-    int marks = 0, other = 0;
-    for (int v = 0; v < 8; ++v) {
-      if (v >> a & 1) continue; /* the lines through the block */
-      const unsigned char *mark = l->mark + b->p[v];
-      const float *c = l->c[a] + b->p[v];
-      marks |= mark[-s] | mark[0] | mark[s] | mark[2 * s];
-      other |= c[-s] != c0 || c[0] != c0 || c[s] != c0 || c[2 * s] != c0 || c[3 * s] != c0;
-    }
-    if (marks != 0 || other) return false;
-  }
-  return true;
-}
-
-/* What fill_cell does there. */
-static void fill_plain(const cf_coupled *l, const cf_coupled *coarse, const cf_block *b,
-                       const float held_share) {
-  float free = 0, held = 0;
-  for (int v = 0; v < 8; ++v) free += l->free[b->p[v]], held += l->held[b->p[v]];
-  coarse->free[b->parent] = free;
-  coarse->held[b->parent] = held_share * held;
-  for (int a = 0; a < 3; ++a) {
-    const float face = l->c[a][b->p[0]], half = 0.5f / face, both = 1 / (1 / face + half + half);
-    const unsigned char weight = as_byte(half * both);
-    coarse->c[a][b->parent] = both + both + both + both;
-    for (int v = 0; v < 8; ++v)
-      if (l->weight[a][b->p[v]] != weight) l->weight[a][b->p[v]] = weight;
-  }
-}
-
 /* The couplings of a coarse cell to its low neighbours, its diagonal, and the weights of its cells. What cells with another
  * parent add comes later. */
 static void fill_cell(const cf_coupled *l, const cf_coupled *coarse, const int at[3],
@@ -112,10 +76,6 @@ static void fill_cell(const cf_coupled *l, const cf_coupled *coarse, const int a
   cf_block_find(&b, l, coarse, at);
   float free = 0, held = 0, c[3] = {0, 0, 0};
   series through = {0};
-  if (is_plain(l, &b)) {
-    fill_plain(l, coarse, &b, held_share);
-    return;
-  }
   for (int v = 0; v < 8 && v < b.count; ++v) {
     const ptrdiff_t p = b.p[v];
     const bool takes_part = cf_coupled_has(l, p) && !cf_odds_has(l, p);
@@ -130,6 +90,131 @@ static void fill_cell(const cf_coupled *l, const cf_coupled *coarse, const int a
   coarse->held[b.parent] = held_share * held;
   for (int a = 0; a < l->dim; ++a) coarse->c[a][b.parent] = c[a];
 }
+
+/* --- many at once ------------------------------------------------------------------------------------- */
+
+/* Where no face is closed nor beyond a wall, coarse cells of a row are made together: [I, I + n) of row (J, K), from fine
+ * cells that begin at p. All is added in the order of fill_cell, so that it does not matter which of them is met. */
+enum { TOGETHER = 16 };
+
+typedef struct together {
+  const cf_coupled *l, *coarse;
+  int n;
+  ptrdiff_t p, parent;
+  float held_share;
+} together;
+
+/* sum[I] += both fine values above it. */
+CF_CLONES static void add_pairs(const int n, const float *fine, float *sum) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) sum[i] = sum[i] + fine[2 * i] + fine[2 * i + 1];
+}
+
+/* Faces of a row across it, with those below and above: the couplings in series, and the weights of the cells above the
+ * faces and below them. */
+CF_CLONES static void join_faces(const int n, const float *low, const float *face, const float *high,
+                                 float *both, unsigned char *above, unsigned char *below) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    const float before = 0.5f / low[i], after = 0.5f / high[i];
+    both[i] = 1 / (1 / face[i] + before + after);
+    const float over = 256 * (after * both[i]) + 0.5f, under = 256 * (before * both[i]) + 0.5f;
+    above[i] = (unsigned char)(over < 255 ? over : 255);
+    below[i] = (unsigned char)(under < 255 ? under : 255);
+  }
+}
+
+/* Axes across the row: on the low side of the blocks the coupling and the weights of their low cells, on the high side the
+ * weights of their high cells. */
+static void fill_across(const together *t, const int a) {
+  const cf_coupled *l = t->l;
+  const ptrdiff_t s = l->box.stride[a], beside = l->dim == 3 ? l->box.stride[3 - a] : 0;
+  float both[2 * TOGETHER], *sum = t->coarse->c[a] + t->parent;
+  unsigned char unused[2 * TOGETHER];
+  memset(sum, 0, (size_t)t->n * sizeof *sum);
+  for (int line = 0; line < (l->dim == 3 ? 2 : 1); ++line) {
+    const ptrdiff_t p = t->p + line * beside;
+    const float *c = l->c[a] + p;
+    unsigned char *w = l->weight[a] + p;
+    join_faces(2 * t->n, c + s, c + 2 * s, c + 3 * s, both, unused, w + s);
+    join_faces(2 * t->n, c - s, c, c + s, both, w, unused);
+    add_pairs(t->n, both, sum);
+  }
+}
+
+/* Faces along the row: every other one lies between coarse cells. */
+static void fill_along(const together *t) {
+  const cf_coupled *l = t->l;
+  float part[3][TOGETHER + 1], both[TOGETHER + 1], *sum = t->coarse->c[0] + t->parent;
+  unsigned char above[TOGETHER + 1], below[TOGETHER + 1];
+  memset(sum, 0, (size_t)t->n * sizeof *sum);
+  for (int line = 0; line < (l->dim == 3 ? 4 : 2); ++line) {
+    const ptrdiff_t p =
+        t->p + (line & 1) * l->box.stride[1] + (l->dim == 3 ? (line >> 1) * l->box.stride[2] : 0);
+    const float *c = l->c[0] + p;
+    unsigned char *w = l->weight[0] + p;
+    for (int i = 0; i <= t->n; ++i)
+      for (int v = 0; v < 3; ++v) part[v][i] = c[2 * i - 1 + v];
+    join_faces(t->n + 1, part[0], part[1], part[2], both, above, below);
+    for (int i = 0; i < t->n; ++i) {
+      sum[i] += both[i];
+      w[2 * i] = above[i];
+      w[2 * i + 1] = below[i + 1];
+    }
+  }
+}
+
+static void fill_together(const together *t) {
+  const cf_coupled *l = t->l;
+  float *free = t->coarse->free + t->parent, *held = t->coarse->held + t->parent;
+  memset(free, 0, (size_t)t->n * sizeof *free);
+  memset(held, 0, (size_t)t->n * sizeof *held);
+  for (int k = 0; k < (l->dim == 3 ? 2 : 1); ++k)
+    for (int j = 0; j < 2; ++j) {
+      const ptrdiff_t p = t->p + j * l->box.stride[1] + k * l->box.stride[2];
+      add_pairs(t->n, l->free + p, free);
+      add_pairs(t->n, l->held + p, held);
+    }
+  for (int i = 0; i < t->n; ++i) held[i] *= t->held_share;
+  fill_along(t);
+  for (int a = 1; a < l->dim; ++a) fill_across(t, a);
+}
+
+/* Whether the cells of the blocks and those beside them are within the box and bear no mark. */
+static bool is_clean(const together *t, const int at[3]) {
+  const cf_coupled *l = t->l;
+  const int last[3] = {at[0] + t->n - 1, at[1], at[2]};
+  for (int a = 0; a < l->dim; ++a)
+    if (!l->coarsened[a] || at[a] < 1 || 2 * last[a] + 3 >= l->box.n[a]) return false;
+  int marks = 0;
+  for (int k = l->dim == 3 ? -1 : 0; k < (l->dim == 3 ? 3 : 1); ++k)
+    for (int j = -1; j < 3; ++j) {
+      if ((j < 0 || j > 1) && (k < 0 || k > 1)) continue; /* beside an edge of the blocks */
+      const unsigned char *row = l->mark + t->p + j * l->box.stride[1] + k * l->box.stride[2];
+      for (int i = -1; i < 2 * t->n + 1; ++i) marks |= row[i];
+    }
+  return marks == 0 && cf_coupled_has(l, t->p); /* all have an equation, or none: else there were edges */
+}
+
+static void fill_run(const cf_coupled *l, const cf_coupled *coarse, const cf_run *run, const int J,
+                     const int K, const float held_share) {
+  for (int I = run->low; I < run->high; I += TOGETHER) {
+    const int at[3] = {I, J, K}, end = CF_MIN(I + TOGETHER, run->high);
+    const together t = {.l = l,
+                        .coarse = coarse,
+                        .n = end - I,
+                        .p = cf_box_at(&l->box, I << l->coarsened[0], J << l->coarsened[1],
+                                       K << (l->dim == 3 && l->coarsened[2])),
+                        .parent = cf_box_at(&coarse->box, I, J, K),
+                        .held_share = held_share};
+    if (is_clean(&t, at))
+      fill_together(&t);
+    else
+      for (int i = I; i < end; ++i) fill_cell(l, coarse, (int[]){i, J, K}, held_share);
+  }
+}
+
+/* --- a level ------------------------------------------------------------------------------------------ */
 
 cf_status cf_coarsen_follow(const cf_coupled *l, cf_coupled *coarse) {
   if (l->tiles == NULL) return CF_OK;
@@ -158,8 +243,7 @@ cf_status cf_coarsen(cf_coupled *l, cf_coupled *coarse, const cf_part *w) {
   const float held_share = all ? 0.5f : 1; /* twice the distance to the wall */
   CF_PARALLEL_PART (coarse, w, v)
     CF_TILE_ROWS (w, v, J, K)
-      CF_TILE_RUNS (w, v, run)
-        for (int I = run->low; I < run->high; ++I) fill_cell(l, coarse, (int[]){I, J, K}, held_share);
+      CF_TILE_RUNS (w, v, run) fill_run(l, coarse, run, J, K, held_share);
   cf_odds_add(l, coarse, w, held_share);
   return cf_coupled_finish(coarse, w);
 }
