@@ -198,8 +198,10 @@ static bool is_clean(const together *t, const int at[3]) {
 
 static void fill_run(const cf_coupled *l, const cf_coupled *coarse, const cf_run *run, const int J,
                      const int K, const float held_share) {
-  for (int I = run->low; I < run->high; I += TOGETHER) {
-    const int at[3] = {I, J, K}, end = CF_MIN(I + TOGETHER, run->high);
+  const int last = l->box.n[0] / 2 - 2; /* beyond it, and before 1, blocks are at a wall */
+  for (int I = run->low, end; I < run->high; I = end) {
+    const int at[3] = {I, J, K}, most = I < 1 || I > last ? 1 : CF_MIN(TOGETHER, last + 1 - I);
+    end = CF_MIN(I + most, run->high);
     const together t = {.l = l,
                         .coarse = coarse,
                         .n = end - I,

@@ -3,6 +3,7 @@
  * From coefficients to the couplings of the finest level, a face at a time (grid/region.h says what a face is).
  */
 #include <math.h>
+#include <string.h>
 
 #include "solve/varied_part.h"
 
@@ -62,6 +63,78 @@ static void fill_cell(const filling *f, const int at[3], const ptrdiff_t p) {
   l->held[p] = (float)(f->scale * held);
   if (v->alpha.at != NULL && v->alpha.at == v->own_alpha.at) v->own_alpha.at[p] = (cf_real)(alpha + surplus);
 }
+
+/* --- many at once ------------------------------------------------------------------------------------- */
+
+/* Cells of a row that are filled together where they and their neighbours are inside. */
+enum { TOGETHER = 32 };
+
+/* to = scale (beta h2), or of the number where there is no field; and what faces keep of it (NULL: nothing). */
+CF_CLONES static void fill_couplings(const int n, const cf_real *beta, const double number,
+                                     const double scale, const double h2, float *to, cf_real *kept) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) to[i] = (float)(scale * ((beta != NULL ? (double)beta[i] : number) * h2));
+  if (kept == NULL) return;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) kept[i] = beta != NULL ? beta[i] : (cf_real)number;
+}
+
+CF_CLONES static void fill_free(const int n, const cf_real *alpha, const double number, const double scale,
+                                float *to, cf_real *kept) {
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) to[i] = (float)(scale * (alpha != NULL ? (double)alpha[i] : number));
+  if (kept == NULL) return;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) kept[i] = alpha != NULL ? alpha[i] : (cf_real)number;
+}
+
+static bool are_inside(const unsigned char *kind, const int n) {
+  int others = 0;
+  for (int i = 0; i < n; ++i) others |= kind[i] ^ CF_CELL_INSIDE;
+  return others == 0;
+}
+
+/* Whether n cells from `at` on have neighbours in the box on all sides, all of them inside. */
+static bool is_inner(const cf_varied *v, const int at[3], const int n, const ptrdiff_t p) {
+  const cf_box *b = &v->level[0].box;
+  for (int a = 0; a < b->dim; ++a)
+    if (at[a] == 0 || at[a] + (a == 0 ? n : 1) >= b->n[a]) return false;
+  if (v->region == NULL) return true;
+  const unsigned char *kind = v->region->kind + p;
+  bool inside = are_inside(kind - 1, n + 2);
+  for (int a = 1; a < b->dim && inside; ++a)
+    inside = are_inside(kind - b->stride[a], n) && are_inside(kind + b->stride[a], n);
+  return inside;
+}
+
+/* As fill_cell does it, for cells without a wall near them. */
+static void fill_inner(const filling *f, const int n, const ptrdiff_t p) {
+  const cf_varied *v = f->v;
+  const cf_coupled *l = &v->level[0];
+  const bool keeps_beta = v->own_beta.at[0] != NULL,
+             keeps_alpha = v->alpha.at != NULL && v->alpha.at == v->own_alpha.at;
+  for (int a = 0; a < l->dim; ++a)
+    fill_couplings(n, f->c->beta_at != NULL ? f->c->beta_at->at[a] + p : NULL, f->c->beta, f->scale, f->h2,
+                   l->c[a] + p, keeps_beta ? v->own_beta.at[a] + p : NULL);
+  fill_free(n, f->c->alpha_at != NULL ? f->c->alpha_at->at + p : NULL, f->c->alpha, f->scale, l->free + p,
+            keeps_alpha ? v->own_alpha.at + p : NULL);
+  memset(l->held + p, 0, (size_t)n * sizeof *l->held);
+}
+
+static void fill_run(const filling *f, const cf_run *run, const int j, const int k) {
+  const int last = f->v->level[0].box.n[0] - 2;
+  for (int from = run->low, end; from < run->high; from = end) {
+    const int at[3] = {from, j, k}, most = from < 1 || from > last ? 1 : CF_MIN(TOGETHER, last + 1 - from);
+    const ptrdiff_t p = cf_box_at(&f->v->level[0].box, from, j, k);
+    end = CF_MIN(from + most, run->high);
+    if (is_inner(f->v, at, end - from, p))
+      fill_inner(f, end - from, p);
+    else
+      for (int i = from; i < end; ++i) fill_cell(f, (int[]){i, j, k}, p + i - from);
+  }
+}
+
+/* --- the range of coefficients -------------------------------------------------------------------------- */
 
 /* Least and largest of what is met. */
 typedef struct range {
@@ -130,8 +203,6 @@ cf_status cf_varied_fill(cf_varied *v, const cf_coefficients *c, const cf_part *
   cf_coupled *l = &v->level[0];
   CF_PARALLEL_PART (l, w, r)
     CF_TILE_ROWS (w, r, j, k)
-      CF_TILE_RUNS (w, r, run)
-        for (int i = run->low; i < run->high; ++i)
-          fill_cell(&f, (int[]){i, j, k}, cf_box_at(&l->box, i, j, k));
+      CF_TILE_RUNS (w, r, run) fill_run(&f, run, j, k);
   return cf_coupled_finish(l, w);
 }
