@@ -130,13 +130,21 @@ static void correct_around(const cf_box_solver *f) {
   cf_box_spread_odds(f);
 }
 
+static void correct(const cf_box_solver *f, int l);
+
+/* The same, with the ghosts that interpolation reads. */
+static void correct_from(const cf_box_solver *f, const int l) {
+  correct(f, l);
+  cf_split_fill_seams(&f->level[l], f->level[l].e);
+}
+
 /* e from r on level l, whose first half sweep is done. */
 static void correct(const cf_box_solver *f, const int l) {
   if (cf_level_is_solved_directly(f->level[l].plain)) {
     solve_coarsest(f);
     return;
   }
-  cf_pass down = pass_on(f, l), up = down;
+  cf_pass down = pass_on(f, l), again = down, up = down;
   if (l == f->depth - 1) {
     push_half_sweeps(&down, f->jacobi, half_sweeps_for(f->jacobi, COARSEST_GAIN), false);
     cf_wave_run(&f->wave, &down);
@@ -145,8 +153,16 @@ static void correct(const cf_box_solver *f, const int l) {
   push_start(&down);
   push(&down, CF_PASS_RESTRICT, 0);
   cf_wave_run(&f->wave, &down);
-  correct(f, l + 1);
-  cf_split_fill_seams(down.coarse, down.coarse->e);
+  correct_from(f, l + 1);
+  /* The finest level's cycle gains so much that the coarse correction must be as good: a W-cycle. */
+  if (!cf_level_is_solved_directly(f->level[l + 1].plain) && f->thorough) {
+    push(&again, CF_PASS_PROLONG, 0);
+    push(&again, CF_PASS_RED, 0);
+    push(&again, CF_PASS_BLACK, 1);
+    push(&again, CF_PASS_RESTRICT_RED, 0);
+    cf_wave_run(&f->wave, &again);
+    correct_from(f, l + 1);
+  }
   push(&up, CF_PASS_PROLONG, 0);
   for (int v = 0; v < COARSE_SWEEPS; ++v) {
     push(&up, CF_PASS_RED, 0);
@@ -157,9 +173,31 @@ static void correct(const cf_box_solver *f, const int l) {
 
 /* --- passes over the finest level ---------------------------------------------------------------------- */
 
+/* The half sweeps before the coarse correction, of which FIRST, at the end of the pass before, has done one. */
 static void push_first_part(const cf_box_solver *f, cf_pass *p) {
-  push_start(p);
-  if (f->depth > 1) push(p, CF_PASS_RESTRICT, 0);
+  if (!f->thorough) {
+    push_start(p);
+    if (f->depth > 1) push(p, CF_PASS_RESTRICT, 0);
+    return;
+  }
+  push(p, CF_PASS_SECOND, f->omega[1]);
+  push(p, CF_PASS_RED, f->omega[2]);
+  push(p, CF_PASS_BLACK, f->omega[3]);
+  push(p, CF_PASS_RESTRICT_RED, 0);
+}
+
+/* Those after it, and taking the correction. */
+static void push_second_part(const cf_box_solver *f, cf_pass *p) {
+  push(p, CF_PASS_PROLONG, 0);
+  if (!f->thorough) {
+    push(p, CF_PASS_RED, 0);
+    push_end(p, 0, 0);
+    return;
+  }
+  push(p, CF_PASS_RED, f->omega[4]);
+  push(p, CF_PASS_BLACK, f->omega[5]);
+  push(p, CF_PASS_RED, f->omega[6]);
+  push_end(p, f->omega[7], f->omega[0]);
 }
 
 static double sum_of(const cf_box_solver *f, const cf_pass_sum kind) {
@@ -212,7 +250,7 @@ void cf_box_form(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b,
   cf_pass p = pass_on_finest(f, b, x);
   p.scale = it->scale;
   p.shift = it->shift;
-  push(&p, CF_PASS_FORM, f->depth > 1 ? 0 : 1);
+  push(&p, CF_PASS_FORM, f->depth == 1 ? 1 : f->thorough ? f->omega[0] : 0);
   if (f->depth > 1) push_first_part(f, &p);
   cf_wave_run(&f->wave, &p);
   take_form_sums(f, it);
@@ -230,12 +268,9 @@ void cf_box_cycle(const cf_box_solver *f, const cf_cell b, const cf_cell x, cons
   if (f->varied != NULL) {
     correct_around(f);
   } else {
-    correct(f, 1);
-    cf_split_fill_seams(p.coarse, p.coarse->e);
+    correct_from(f, 1);
   }
-  push(&p, CF_PASS_PROLONG, 0);
-  push(&p, CF_PASS_RED, 0);
-  push_end(&p, 0, 0);
+  push_second_part(f, &p);
   if (!last) push_first_part(f, &p);
   run_update(f, &p, it);
   it->ready = !last;

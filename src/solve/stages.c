@@ -52,7 +52,10 @@ void cf_stage_run(const cf_pass *p, const int number, const cf_strip *t) {
       cf_stage_update(p, t, omega);
       break;
     case CF_PASS_RESTRICT:
-      cf_stage_restrict(p, t);
+      cf_stage_restrict(p, t, false);
+      break;
+    case CF_PASS_RESTRICT_RED:
+      cf_stage_restrict(p, t, true);
       break;
     case CF_PASS_PROLONG:
       cf_stage_prolong(p, t, omega_of(p, number + 1) == 1);
@@ -72,5 +75,6 @@ size_t cf_stage_scratch(const cf_split *s) {
 
 bool cf_stage_reads_around(const cf_pass_stage stage) {
   return stage == CF_PASS_SECOND || stage == CF_PASS_RED || stage == CF_PASS_BLACK || stage == CF_PASS_LAST ||
-         stage == CF_PASS_RESTRICT || stage == CF_PASS_RESIDUAL || stage == CF_PASS_UPDATE;
+         stage == CF_PASS_RESTRICT || stage == CF_PASS_RESTRICT_RED || stage == CF_PASS_RESIDUAL ||
+         stage == CF_PASS_UPDATE;
 }

@@ -11,6 +11,7 @@
  *     LAST         a black half sweep that leaves the residual behind in r
  *     UPDATE       red: r -= A' e; all: x += gain e, and the sum of r^2; then FIRST on the new r
  *     RESTRICT     the residual of SECOND, averaged over the children of a coarse cell; FIRST on the coarse level
+ *     RESTRICT_RED the same after a black half sweep with omega = 1, which leaves nothing on black cells
  *     PROLONG      e += interpolated correction of the coarse level; on black cells alone if the red half sweep that
  *                  follows has omega = 1, and so makes e of red cells from that of black ones, whatever it was
  *
@@ -38,6 +39,7 @@ typedef enum cf_pass_stage {
   CF_PASS_LAST,
   CF_PASS_UPDATE,
   CF_PASS_RESTRICT,
+  CF_PASS_RESTRICT_RED,
   CF_PASS_PROLONG,
   CF_PASS_CLEAR,
   CF_PASS_RESIDUAL

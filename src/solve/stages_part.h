@@ -132,7 +132,7 @@ void cf_stage_residual(const cf_split *s, const cf_strip *t);
 
 void cf_stage_on_segments(const cf_pass *p, int number, const cf_strip *t, float omega);
 
-void cf_stage_restrict(const cf_pass *p, const cf_strip *t);
+void cf_stage_restrict(const cf_pass *p, const cf_strip *t, bool red_alone);
 void cf_stage_prolong(const cf_pass *p, const cf_strip *t, bool black_alone);
 
 /* Images behind the walls in x of those cells of a half row that meet them: factor times s->image times e. They are

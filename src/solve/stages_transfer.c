@@ -9,7 +9,16 @@
 /* --- to the coarse level ------------------------------------------------------------------------------ */
 
 /* What a fine row leaves to its coarse row: sum[m] (+)= weight (share of even cell m times its residual, and the
- * same of odd cell m). form 0: uneven, 1: even couplings, 2: stencils for both colours. */
+ * same of odd cell m). */
+enum {
+  UNEVEN,
+  EVEN,
+  BOTH_COLOURS,
+  RED_UNEVEN,
+  RED_EVEN,
+  FORMS
+}; /* stencils for both colours; red cells alone */
+
 CF_KERNEL void gather(const int dim, const int form, const bool fresh, const cf_split *s, const cf_strip *t,
                       const int j, const int k, const float weight, float *sum) {
   const cf_half red = cf_half_of(dim, s, j, k, 0), black = cf_half_of(dim, s, j, k, 1);
@@ -17,8 +26,13 @@ CF_KERNEL void gather(const int dim, const int form, const bool fresh, const cf_
   const float *share_black = s->share + (red.parity ? 0 : s->odd);
   const float left_red = 1 - s->omega[0], left_black = (1 - s->omega[1]) / s->omega[1];
   CF_FOR_PIECE(m, t) {
+    if (form >= RED_UNEVEN) {
+      const float rest = red.r[m] - (red.diagonal[m] * red.e[m] - cf_around(dim, form == RED_EVEN, &red, m));
+      sum[m] = fresh ? weight * (share_red[m] * rest) : sum[m] + weight * (share_red[m] * rest);
+      continue;
+    }
     float from_red, from_black;
-    if (form == 2) {
+    if (form == BOTH_COLOURS) {
       from_red = red.r[m] - (red.diagonal[m] * red.e[m] - cf_around(dim, 0, &red, m));
       from_black = black.r[m] - (black.diagonal[m] * black.e[m] - cf_around(dim, 0, &black, m));
     } else {
@@ -95,18 +109,26 @@ CF_KERNEL void restrict_rows(const int dim, const int form, const cf_pass *p, co
 
 #define RESTRICT(name, dim, form) \
   CF_CLONES static void name(const cf_pass *p, const cf_strip *t) { restrict_rows(dim, form, p, t); }
-RESTRICT(restrict_2d_uneven, 2, 0)
-RESTRICT(restrict_2d_even, 2, 1)
-RESTRICT(restrict_2d_both, 2, 2)
-RESTRICT(restrict_3d_uneven, 3, 0)
-RESTRICT(restrict_3d_even, 3, 1)
-RESTRICT(restrict_3d_both, 3, 2)
+RESTRICT(uneven_2d, 2, UNEVEN)
+RESTRICT(uneven_3d, 3, UNEVEN)
+RESTRICT(even_2d, 2, EVEN)
+RESTRICT(even_3d, 3, EVEN)
+RESTRICT(both_2d, 2, BOTH_COLOURS)
+RESTRICT(both_3d, 3, BOTH_COLOURS)
+RESTRICT(red_uneven_2d, 2, RED_UNEVEN)
+RESTRICT(red_uneven_3d, 3, RED_UNEVEN)
+RESTRICT(red_even_2d, 2, RED_EVEN)
+RESTRICT(red_even_3d, 3, RED_EVEN)
 
-void cf_stage_restrict(const cf_pass *p, const cf_strip *t) {
-  static void (*const by_form[2][3])(const cf_pass *, const cf_strip *) = {
-      {restrict_2d_uneven, restrict_2d_even, restrict_2d_both},
-      {restrict_3d_uneven, restrict_3d_even, restrict_3d_both}};
-  by_form[p->at->dim - 2][p->at->odd_seam ? 2 : p->at->even_couplings](p, t);
+void cf_stage_restrict(const cf_pass *p, const cf_strip *t, const bool red_alone) {
+  static void (*const by_form[FORMS][2])(const cf_pass *, const cf_strip *) = {{uneven_2d, uneven_3d},
+                                                                               {even_2d, even_3d},
+                                                                               {both_2d, both_3d},
+                                                                               {red_uneven_2d, red_uneven_3d},
+                                                                               {red_even_2d, red_even_3d}};
+  const int even = p->at->even_couplings;
+  const int form = p->at->odd_seam ? BOTH_COLOURS : red_alone ? RED_UNEVEN + even : even;
+  by_form[form][p->at->dim - 2](p, t);
 }
 
 /* --- from the coarse level ---------------------------------------------------------------------------- */
