@@ -43,7 +43,7 @@ static void few_cycles_for_any_right_side_and_walls(void **state) {
           const outcome o = solve(&c, 1e-6);
           assert_true(o.report.converged);
           BELOW(o.residual, 1.01e-6);
-          BELOW(o.report.iterations, c.sigma < 1.5 ? 2 : 6);
+          BELOW(o.report.iterations, c.sigma < 1.5 ? 2 : 4);
           if (o.report.iterations > most) most = o.report.iterations;
         }
         print_message(" %d", most);
