@@ -16,8 +16,6 @@
 /* Up to this stiffness half sweeps alone are fewer operations, and fewer passes over memory, than cycles with coarse
  * levels: 32 of them, in one pass, do what 5 or 6 cycles do. */
 #define CF_BOX_SWEEPS_ENOUGH 10
-/* In a region: over-relaxation of the finest level over that of the others. */
-#define CF_BOX_FINEST_OVER 0.85
 /* Over-relaxation of the finest level over that of the others, where cycles are not thorough. */
 #define CF_BOX_FINEST_OVER 0.85
 /* Half sweeps of a thorough cycle on the finest level, as many before the coarse correction as after it. */
