@@ -25,6 +25,7 @@
 #define RECURSION_SLACK 0.01
 /* Near walls on the levels below: enough for the stationary iteration. */
 #define BAND_SWEEPS 1
+#define BAND_OMEGA  1.15f
 /* A cycle that leaves more than this of the residual, so many times in a row: not a case for this path. */
 #define SLOW       0.5
 #define SLOW_TIMES 3
@@ -398,7 +399,7 @@ cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, 
   const cf_coupled *l = &f->varied->level[0];
   report->pockets = pockets->count;
   f->varied->careful = false;
-  f->varied->band_sweeps = BAND_SWEEPS;
+  f->varied->band_sweeps = (cf_band_sweeps){BAND_SWEEPS, BAND_OMEGA};
   if (f->singular)
     return run(f, A, b, o, x, report, finished); /* which looks after a single mean by itself */
   cf_pockets_remove_means(pockets, l, b);

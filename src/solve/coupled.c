@@ -39,6 +39,7 @@ static cf_status all_rows(cf_coupled *l) {
   l->all[0] = (cf_run){0, l->box.n[0]};
   l->row = l->all_rows;
   l->run = l->all;
+  for (int a = 0; a < 3; ++a) l->high[a] = l->box.n[a];
   return CF_OK;
 }
 
@@ -51,7 +52,8 @@ cf_status cf_coupled_create(cf_coupled *l, const cf_box *b, const bool periodic[
   for (int f = 0; f < FLOATS - (b->dim == 2); ++f) CF_TRY(field_create(l, (void **)field[f], sizeof(float)));
   for (int a = 0; a < b->dim; ++a) CF_TRY(field_create(l, (void **)&l->weight[a], 1));
   CF_TRY(field_create(l, (void **)&l->mark, 1));
-  return tiles == NULL ? all_rows(l) : CF_OK;
+  CF_TRY(CF_NEW(&l->band, (ptrdiff_t)b->n[1] * b->n[2]));
+  return tiles == NULL ? all_rows(l) : CF_NEW(&l->row_at, (ptrdiff_t)tiles->n[1] * tiles->n[2]);
 }
 
 void cf_coupled_destroy(cf_coupled *l) {
@@ -61,15 +63,32 @@ void cf_coupled_destroy(cf_coupled *l) {
   for (int a = 0; a < 3; ++a) field_destroy(l, l->weight[a], 1);
   field_destroy(l, l->mark, 1);
   cf_free(l->all_rows);
+  cf_free(l->row_at);
+  cf_free(l->band);
   cf_free(l->odd_cell);
   cf_free(l->odd_block);
   cf_free(l->odd_parent);
   cf_free(l->odd_value);
   cf_free(l->odd_island);
-  cf_free(l->band[0]);
-  cf_free(l->band[1]);
   cf_tiles_destroy(l->own_tiles);
   *l = (cf_coupled){0};
+}
+
+/* Where which row of tiles is, and what they all lie within. */
+static void find_rows(cf_coupled *l) {
+  const cf_tiles *t = l->tiles;
+  memset(l->row_at, -1, (size_t)t->n[1] * (size_t)t->n[2] * sizeof *l->row_at);
+  for (int a = 0; a < 3; ++a) l->low[a] = l->box.n[a], l->high[a] = 0;
+  for (ptrdiff_t v = 0; v < l->rows; ++v) {
+    const cf_tile_row *r = &l->row[v];
+    const int low[3] = {l->run[r->run].low, r->j, r->k};
+    const int high[3] = {l->run[r->run_end - 1].high, r->j_end, r->k_end};
+    l->row_at[(r->k >> t->shift[2]) * (ptrdiff_t)t->n[1] + (r->j >> t->shift[1])] = (int32_t)v;
+    for (int a = 0; a < 3; ++a) {
+      l->low[a] = CF_MIN(l->low[a], low[a]);
+      l->high[a] = CF_MAX(l->high[a], high[a]);
+    }
+  }
 }
 
 void cf_coupled_follow_tiles(cf_coupled *l) {
@@ -83,6 +102,7 @@ void cf_coupled_follow_tiles(cf_coupled *l) {
   l->row = l->tiles->row;
   l->run = l->tiles->run;
   l->rows = l->tiles->rows;
+  find_rows(l);
 }
 
 void cf_coupled_place(const cf_box *b, ptrdiff_t p, int at[3]) {
@@ -205,58 +225,23 @@ static bool is_near_marks(const cf_coupled *l, const cf_run *run, const int j, c
   return false;
 }
 
-/* The cells at an edge and their neighbours. */
-static bool is_in_band(const cf_coupled *l, const int at[3], const ptrdiff_t p) {
-  if (l->mark[p] & CF_MARK_EDGE) return true;
-  for (int a = 0; a < l->dim; ++a)
-    for (int side = 0; side < 2; ++side)
-      if (l->c[a][side ? p + l->box.stride[a] : p] > 0 &&
-          l->mark[p + step_to(l, a, at[a], side)] & CF_MARK_EDGE)
-        return true;
-  return false;
-}
-
-static cf_status grow(ptrdiff_t **list, ptrdiff_t *room, const ptrdiff_t count) {
-  if (count < *room) return CF_OK;
-  ptrdiff_t *more;
-  CF_TRY(CF_NEW(&more, 2 * *room + 1024));
-  if (*list != NULL) memcpy(more, *list, (size_t)count * sizeof *more);
-  cf_free(*list);
-  *list = more;
-  *room = 2 * *room + 1024;
-  return CF_OK;
-}
-
-/* What is outside a part stays; within it the band is found anew. The order within a colour does not matter: its cells do
- * not see each other. */
-static void keep_band(cf_coupled *l, const cf_part *w) {
-  for (int colour = 0; colour < 2; ++colour) {
-    ptrdiff_t kept = 0;
-    for (ptrdiff_t v = 0; v < l->bands[colour] && w->tiles != NULL; ++v) {
-      const ptrdiff_t p = l->band[colour][v];
-      int at[3];
-      cf_coupled_place(&l->box, p, at);
-      if (cf_coupled_has(l, p) && !cf_part_has(w, at)) l->band[colour][kept++] = p;
+/* Of the rows of a part, as far as the level has them; what is outside the part stays. */
+static void find_band(const cf_coupled *l, const cf_part *w) {
+  CF_PARALLEL_PART (l, w, v)
+    CF_TILE_ROWS (w, v, j, k) {
+      const cf_tile_row *row = cf_coupled_row_at(l, j, k);
+      bool any = false;
+      for (ptrdiff_t q = row != NULL ? row->run : 0; row != NULL && q < row->run_end && !any; ++q)
+        any = is_near_marks(l, &l->run[q], j, k);
+      l->band[j + (ptrdiff_t)l->box.n[1] * k] = any;
     }
-    l->bands[colour] = kept;
-  }
 }
 
-static cf_status collect_band(cf_coupled *l, const cf_part *w) {
-  keep_band(l, w);
-  for (ptrdiff_t v = 0; v < w->rows; ++v)
-    CF_TILE_ROWS (w, v, j, k)
-      CF_TILE_RUNS (w, v, run) {
-        if (!is_near_marks(l, run, j, k)) continue;
-        for (int i = run->low; i < run->high; ++i) {
-          const int at[3] = {i, j, k}, colour = (i + j + k) & 1;
-          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
-          if (!cf_coupled_has(l, p) || !is_in_band(l, at, p)) continue;
-          CF_TRY(grow(&l->band[colour], &l->band_room[colour], l->bands[colour]));
-          l->band[colour][l->bands[colour]++] = p;
-        }
-      }
-  return CF_OK;
+static bool is_any_row_in_band(const cf_coupled *l) {
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      if (l->band[j + (ptrdiff_t)l->box.n[1] * k]) return true;
+  return false;
 }
 
 cf_status cf_coupled_finish(cf_coupled *l, const cf_part *w) {
@@ -267,5 +252,7 @@ cf_status cf_coupled_finish(cf_coupled *l, const cf_part *w) {
     CF_TILE_ROWS (w, v, j, k)
       CF_TILE_RUNS (w, v, run) heavy |= finish_run(l, run, j, k);
   l->is_gentle = heavy || (w->tiles != NULL && l->is_gentle && is_any_heavy(l));
-  return collect_band(l, w);
+  find_band(l, w);
+  l->has_band = is_any_row_in_band(l);
+  return CF_OK;
 }

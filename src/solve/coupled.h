@@ -13,8 +13,8 @@
  * diagonal of the finest level is about 1.
  *
  * What is around it comes in four steps: half sweeps of red-black Gauss-Seidel, mildly over-relaxed; extra sweeps
- * over the band of cells near closed and held faces (McAdams, Sifakis, Teran 2010), for which neither smoothing nor
- * correction is as good as inside; the residual summed over the children of coarse cells; and interpolation
+ * over the rows that have cells near closed and held faces (after McAdams, Sifakis, Teran 2010), for which neither smoothing
+ * nor correction is as good as inside; the residual summed over the children of coarse cells; and interpolation
  *
  *     e_p += e_c + sum over axes of w_a (e_{c+a} - e_c)
  *
@@ -22,7 +22,8 @@
  * coarse centres that lies before the fine one: 1/4 where nothing varies, 0 through a closed face (coarsen.h makes
  * it; bytes in units of 1/256).
  *
- * Sweeps visit the runs of active tiles, or all rows.
+ * Sweeps visit the runs of active tiles, or all rows; those on one side of the coarse correction in one pass over memory
+ * (lean.h), where no axis is periodic.
  */
 #ifndef CF_SOLVE_COUPLED_H
 #define CF_SOLVE_COUPLED_H
@@ -57,6 +58,8 @@ typedef struct cf_coupled {
   ptrdiff_t rows;
   cf_tile_row *all_rows; /* our own, where there are no tiles */
   cf_run all[1];
+  int32_t *row_at;     /* with tiles: which entry of `row` a row of tiles is, -1: none */
+  int low[3], high[3]; /* cells that are visited lie within */
 
   float *e, *r, *rest;          /* correction, right side, residual */
   float *inverse, *free, *held; /* 1/diagonal (0: no equation) and its parts */
@@ -71,8 +74,9 @@ typedef struct cf_coupled {
   float *odd_value;
   int32_t *odd_island; /* 0: has a parent, or the number of the island */
 
-  bool is_gentle; /* alpha holds some cells so much that they must not be over-relaxed */
-  ptrdiff_t bands[2], band_room[2], *band[2]; /* cells near closed and held faces, by colour */
+  bool is_gentle;      /* alpha holds some cells so much that they must not be over-relaxed */
+  bool has_band;       /* some face is closed or held */
+  unsigned char *band; /* of row j + n[1] k: whether it has cells at such a face, or beside one that is */
 } cf_coupled;
 
 /* Shapes a level on the box `b`; fields are pages, untouched. CF_NO_MEMORY; what was made is freed by destroy. */
@@ -95,16 +99,22 @@ cf_status cf_coupled_finish(cf_coupled *l, const cf_part *w);
 /* Where cell p of a box is. */
 void cf_coupled_place(const cf_box *b, ptrdiff_t p, int at[3]);
 
-/* e from e = 0: a red-black sweep, and `band` sweeps over the band. */
-void cf_coupled_smooth_first(const cf_coupled *l, float omega, int band);
+/* Sweeps over the band, and how much they are over-relaxed. */
+typedef struct cf_band_sweeps {
+  int count;
+  float omega;
+} cf_band_sweeps;
 
-/* `band` sweeps over the band, then `sweeps` full ones. */
-void cf_coupled_smooth(const cf_coupled *l, float omega, int band, int sweeps);
+/* e from e = 0: a red-black sweep, and those over the band; then, if asked, rest = r - A e. */
+void cf_coupled_smooth_first(const cf_coupled *l, float omega, cf_band_sweeps band, bool with_rest);
+
+/* Sweeps over the band, then `sweeps` full ones. */
+void cf_coupled_smooth(const cf_coupled *l, float omega, cf_band_sweeps band, int sweeps);
 
 /* What smooth_first does in the opposite order: its transpose, for a cycle that must be symmetric. */
-void cf_coupled_smooth_back(const cf_coupled *l, float omega, int band);
+void cf_coupled_smooth_back(const cf_coupled *l, float omega, cf_band_sweeps band);
 
-/* coarse->r = sums of the residual of `l`. */
+/* coarse->r = sums of the rest of `l`, which is changed. */
 void cf_coupled_restrict(const cf_coupled *l, const cf_coupled *coarse);
 
 /* e += interpolated coarse->e. */
@@ -121,14 +131,20 @@ void cf_coupled_prolong_back(const cf_coupled *coarse, const cf_coupled *l);
 void cf_coupled_wrap(const cf_coupled *l, float *f);
 void cf_coupled_wrap_axis(const cf_coupled *l, int a, float *f);
 
-/* rest = r - A e. */
-void cf_coupled_form_rest(const cf_coupled *l);
-
 /* Whether cell p has an equation. */
 static inline bool cf_coupled_has(const cf_coupled *l, const ptrdiff_t p) { return l->inverse[p] > 0; }
 
 static inline int cf_coupled_threads(const cf_coupled *l) {
   return l->tiles != NULL ? cf_tiles_threads(l->tiles, l->threads) : cf_sweep_threads(&l->box, l->threads);
+}
+
+/* The entry of cf_coupled.row that has row (j, k); NULL: nothing of it is visited. Where all rows are, any entry has its
+ * runs. */
+static inline const cf_tile_row *cf_coupled_row_at(const cf_coupled *l, const int j, const int k) {
+  if (l->tiles == NULL) return l->row;
+  const cf_tiles *t = l->tiles;
+  const int32_t v = l->row_at[(k >> t->shift[2]) * (ptrdiff_t)t->n[1] + (j >> t->shift[1])];
+  return v >= 0 ? &l->row[v] : NULL;
 }
 
 /* The rows of a part w of level l. */

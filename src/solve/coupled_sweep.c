@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Half sweeps on a level of couplings, and its residual.
+ * Half sweeps on a level of couplings, and its residual, as lists of stages.
  */
 #include "solve/coupled.h"
 
 #include "solve/colours.h"
+#include "solve/lean.h"
 
 /* --- seams -------------------------------------------------------------------------------------------- */
 
@@ -123,28 +124,63 @@ CF_CLONED(first_row, const view *, const place)
 CF_CLONED_FORMS(half_row, const view *, const place)
 CF_CLONED(residual_row, const view *, const place)
 
-static void half_row_by_dim(const int dim, const int n, const view *v, const place at) {
-  half_row_by_form(dim, 0, n, v, at);
+/* --- stages ------------------------------------------------------------------------------------------- */
+
+typedef enum stage_kind { FIRST, HALF, BAND, REST } stage_kind;
+
+typedef struct stage {
+  stage_kind kind;
+  int colour;
+  float omega;
+} stage;
+
+/* What is done to a level on one side of the coarse correction. */
+#define STAGES_MAX 24
+
+typedef struct list {
+  const cf_coupled *l;
+  int count;
+  stage stage[STAGES_MAX];
+} list;
+
+static void push(list *s, const stage_kind kind, const int colour, const float omega) {
+  if (s->count < STAGES_MAX) s->stage[s->count++] = (stage){kind, colour, omega};
 }
 
-static void gentle_row_by_dim(const int dim, const int n, const view *v, const place at) {
-  half_row_by_form(dim, 1, n, v, at);
+static void push_band(list *s, const cf_band_sweeps band, const bool back) {
+  for (int v = 0; v < 2 * band.count && s->l->has_band; ++v) push(s, BAND, (v + back) % 2, band.omega);
 }
 
-typedef void row_kernel(int dim, int n, const view *v, place at);
-
-/* `end`: cells from there on, along each axis, are left out. */
-static void sweep(const cf_coupled *l, row_kernel *kernel, const float omega, const int colour,
-                  const int end[3]) {
-  const view w = view_of(l, omega);
-  CF_PARALLEL_COUPLED (l, v)
-    CF_TILE_ROWS (l, v, j, k) {
-      if (j >= end[1] || k >= end[2]) continue;
-      CF_TILE_RUNS (l, v, run)
-        kernel(l->dim, CF_MIN(run->high, end[0]) - run->low, &w,
-               (place){cf_box_at(&l->box, run->low, j, k), (j + k + colour + run->low) & 1});
-    }
+static void run_row(const cf_coupled *l, const stage_kind kind, const int n, const view *v, const place at) {
+  if (kind == FIRST)
+    first_row_by_dim(l->dim, n, v, at);
+  else if (kind == REST)
+    residual_row_by_dim(l->dim, n, v, at);
+  else
+    half_row_by_form(l->dim, l->is_gentle, n, v, at);
 }
+
+/* Stage `number` on rows [j, j_end) of plane k. end: cells from there on, along each axis, are left out. */
+static void run_rows_to(const list *s, const int number, int j, const int j_end, const int k,
+                        const int end[3]) {
+  const cf_coupled *l = s->l;
+  const stage *t = &s->stage[number];
+  const view w = view_of(l, t->omega);
+  for (; j < CF_MIN(j_end, end[1]); ++j) {
+    const cf_tile_row *row = cf_coupled_row_at(l, j, k);
+    if (row == NULL || (t->kind == BAND && !l->band[j + (ptrdiff_t)l->box.n[1] * k])) continue;
+    for (const cf_run *run = l->run + row->run; run < l->run + row->run_end; ++run)
+      run_row(l, t->kind, CF_MIN(run->high, end[0]) - run->low, &w,
+              (place){cf_box_at(&l->box, run->low, j, k), (j + k + t->colour + run->low) & 1});
+  }
+}
+
+static void run_rows(const void *of, const int number, const int j, const int j_end, const int k) {
+  const list *s = of;
+  run_rows_to(s, number, j, j_end, k, s->l->box.n);
+}
+
+/* --- periodic axes: stage by stage -------------------------------------------------------------------- */
 
 static float relaxed(const view *v, const int dim, const ptrdiff_t p) {
   float sum = v->r[p];
@@ -155,21 +191,11 @@ static float relaxed(const view *v, const int dim, const ptrdiff_t p) {
   return v->inverse[p] * sum;
 }
 
-/* Colours in turn, or, `back`, the other way round. */
-static void sweep_band(const cf_coupled *l, const int sweeps, const bool back) {
-  const view w = view_of(l, 1);
-  for (int v = 0; v < 2 * sweeps; ++v) {
-    const int colour = (v + back) % 2;
-    const ptrdiff_t *cell = l->band[colour], cells = l->bands[colour];
-    cf_coupled_wrap(l, l->e);
-#pragma omp parallel for schedule(static) num_threads(cells < CF_SERIAL_CELLS ? 1 : l->threads)
-    for (ptrdiff_t i = 0; i < cells; ++i) w.e[cell[i]] = relaxed(&w, l->dim, cell[i]);
-  }
-}
-
 static bool has_odd_seam(const cf_coupled *l, const int a) { return l->periodic[a] && l->box.n[a] % 2 == 1; }
 
-/* Cells of a colour in the last layer of axis a, one after the other. */
+/* Cells of a colour in the last layer of axis a, one after the other. That layer of an odd periodic axis and the first are
+ * neighbours of one colour, moved at once without seeing each other; the last one moves once more, so that it comes after
+ * all others of its colour as Gauss-Seidel has it. */
 static void sweep_seam(const cf_coupled *l, const int a, const int colour, const bool back) {
   const view w = view_of(l, 1);
   int low[3] = {0, 0, 0}, n[3] = {l->box.n[0], l->box.n[1], l->box.n[2]};
@@ -187,48 +213,65 @@ static void sweep_seam(const cf_coupled *l, const int a, const int colour, const
   }
 }
 
-/* The last layer of an odd periodic axis and the first are neighbours of one colour, moved at once without seeing each
- * other; the last one moves once more, so that it comes after all others of its colour as Gauss-Seidel has it. */
-static void sweep_seams(const cf_coupled *l, const int colour) {
-  for (int a = 0; a < l->dim; ++a) sweep_seam(l, a, colour, false);
-}
-
-static void half_sweep(const cf_coupled *l, const float omega, const int colour) {
-  cf_coupled_wrap(l, l->e);
-  sweep(l, l->is_gentle ? gentle_row_by_dim : half_row_by_dim, omega, colour, l->box.n);
-  sweep_seams(l, colour);
-}
-
-/* The same in the opposite order: the last layers first, then all others. */
-static void half_sweep_back(const cf_coupled *l, const float omega, const int colour) {
+/* `back`: the last layers first, then all others. */
+static void run_stage(const list *s, const int number, const bool back) {
+  const cf_coupled *l = s->l;
+  const stage *t = &s->stage[number];
   int end[3] = {l->box.n[0], l->box.n[1], l->box.n[2]};
-  for (int a = l->dim - 1; a >= 0; --a) {
-    sweep_seam(l, a, colour, true);
+  for (int a = l->dim - 1; a >= 0 && back; --a) {
+    sweep_seam(l, a, t->colour, true);
     end[a] -= has_odd_seam(l, a);
   }
-  cf_coupled_wrap(l, l->e);
-  sweep(l, l->is_gentle ? gentle_row_by_dim : half_row_by_dim, omega, colour, end);
+  if (t->kind != FIRST) cf_coupled_wrap(l, l->e);
+  CF_PARALLEL_COUPLED (l, v)
+    for (int k = l->row[v].k; k < CF_MIN(l->row[v].k_end, end[2]); ++k)
+      run_rows_to(s, number, l->row[v].j, l->row[v].j_end, k, end);
+  for (int a = 0; a < l->dim && !back && t->kind != REST; ++a) sweep_seam(l, a, t->colour, false);
 }
 
-void cf_coupled_smooth_first(const cf_coupled *l, const float omega, const int band) {
-  sweep(l, first_row_by_dim, omega, 0, l->box.n);
-  sweep_seams(l, 0);
-  half_sweep(l, omega, 1);
-  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band, false);
+/* --- all of a list ------------------------------------------------------------------------------------ */
+
+static void run(const list *s, const bool back) {
+  const cf_coupled *l = s->l;
+  const int rows = l->high[1] - l->low[1], threads = cf_coupled_threads(l);
+  if (l->periodic[0] || l->periodic[1] || l->periodic[2]) {
+    for (int v = 0; v < s->count; ++v) run_stage(s, v, back);
+    return;
+  }
+  /* e, r, 1/diagonal and couplings of a row */
+  const ptrdiff_t row_bytes = (ptrdiff_t)(l->high[0] - l->low[0]) * (3 + l->dim) * (ptrdiff_t)sizeof(float);
+  cf_lean_run(&(cf_lean){.j = l->low[1],
+                         .j_end = l->high[1],
+                         .k = l->low[2],
+                         .k_end = l->high[2],
+                         .stages = s->count,
+                         .height = cf_lean_height(rows, s->count, row_bytes, threads),
+                         .threads = threads,
+                         .rows = run_rows,
+                         .of = s});
 }
 
-void cf_coupled_smooth(const cf_coupled *l, const float omega, const int band, const int sweeps) {
-  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band, false);
-  for (int v = 0; v < 2 * sweeps; ++v) half_sweep(l, omega, v % 2);
+void cf_coupled_smooth_first(const cf_coupled *l, const float omega, const cf_band_sweeps band,
+                             const bool with_rest) {
+  list s = {.l = l};
+  push(&s, FIRST, 0, omega);
+  push(&s, HALF, 1, omega);
+  push_band(&s, band, false);
+  if (with_rest) push(&s, REST, 0, 1);
+  run(&s, false);
 }
 
-void cf_coupled_smooth_back(const cf_coupled *l, const float omega, const int band) {
-  if (l->bands[0] + l->bands[1] > 0) sweep_band(l, band, true);
-  half_sweep_back(l, omega, 1);
-  half_sweep_back(l, omega, 0);
+void cf_coupled_smooth(const cf_coupled *l, const float omega, const cf_band_sweeps band, const int sweeps) {
+  list s = {.l = l};
+  push_band(&s, band, false);
+  for (int v = 0; v < 2 * sweeps; ++v) push(&s, HALF, v % 2, omega);
+  run(&s, false);
 }
 
-void cf_coupled_form_rest(const cf_coupled *l) {
-  cf_coupled_wrap(l, l->e);
-  sweep(l, residual_row_by_dim, 1, 0, l->box.n);
+void cf_coupled_smooth_back(const cf_coupled *l, const float omega, const cf_band_sweeps band) {
+  list s = {.l = l};
+  push_band(&s, band, true);
+  push(&s, HALF, 1, omega);
+  push(&s, HALF, 0, omega);
+  run(&s, true);
 }

@@ -24,7 +24,6 @@ CF_CLONES static void gather_single(const int n, const int rows, const float *co
 }
 
 void cf_coupled_restrict(const cf_coupled *l, const cf_coupled *coarse) {
-  cf_coupled_form_rest(l);
   for (ptrdiff_t v = 0; v < l->odds; ++v) {
     l->odd_value[v] = l->rest[l->odd_cell[v]];
     l->rest[l->odd_cell[v]] = 0;

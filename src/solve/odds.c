@@ -130,7 +130,7 @@ static cf_status keep_odds(odd_list *o, const cf_coupled *l, const cf_coupled *c
 }
 
 static cf_status add_odds_of(odd_list *o, const cf_coupled *l, const cf_coupled *coarse, const cf_part *w) {
-  if (l->bands[0] + l->bands[1] == 0) return CF_OK; /* nothing is closed */
+  if (!l->has_band) return CF_OK; /* nothing is closed */
   find_pieces(l, coarse, w);
   for (ptrdiff_t v = 0; v < w->rows; ++v)
     CF_TILE_ROWS (w, v, J, K)

@@ -316,11 +316,12 @@ static void solve_last(const cf_varied *v, const int at) {
     cf_band_solve(&v->band, l);
     return;
   }
-  cf_coupled_smooth_first(l, 1, 0);
+  const cf_band_sweeps none = {0, 1};
+  cf_coupled_smooth_first(l, 1, none, false);
   if (v->careful)
-    cf_coupled_smooth_back(l, 1, 0);
+    cf_coupled_smooth_back(l, 1, none);
   else
-    cf_coupled_smooth(l, 1, 0, at == 0 ? 1 : LAST_SWEEPS);
+    cf_coupled_smooth(l, 1, none, at == 0 ? 1 : LAST_SWEEPS);
 }
 
 /* Smoothing in opposite orders and transfers that are each other's transposes: with elimination, or few half sweeps, at
@@ -331,7 +332,7 @@ static void careful_cycle(const cf_varied *v, const int at) {
     solve_last(v, at);
     return;
   }
-  cf_coupled_smooth_first(l, 1, v->band_sweeps);
+  cf_coupled_smooth_first(l, 1, v->band_sweeps, true);
   cf_coupled_restrict(l, &v->level[at + 1]);
   careful_cycle(v, at + 1);
   cf_coupled_prolong_back(&v->level[at + 1], l);
@@ -348,7 +349,7 @@ void cf_varied_cycle(const cf_varied *v, const int at) {
     solve_last(v, at);
     return;
   }
-  cf_coupled_smooth_first(l, OMEGA, v->band_sweeps);
+  cf_coupled_smooth_first(l, OMEGA, v->band_sweeps, true);
   cf_coupled_restrict(l, &v->level[at + 1]);
   cf_varied_cycle(v, at + 1);
   cf_coupled_prolong(&v->level[at + 1], l);

@@ -22,7 +22,7 @@
 /* Beyond this many starts, or a start that gains less than half, rounding is all that is left. */
 #define STARTS_MOST 5
 /* Near walls, before and after the coarse correction. */
-#define BAND_SWEEPS 2
+#define BAND_SWEEPS 3
 /* So many iterations are far more than any equation should need: then the cycle becomes symmetric, with which conjugate
  * gradients cannot stall. */
 #define PATIENCE 25
@@ -120,7 +120,7 @@ cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options 
     return CF_OK;
   }
   v->careful = false;
-  v->band_sweeps = BAND_SWEEPS;
+  v->band_sweeps = (cf_band_sweeps){BAND_SWEEPS, 1}; /* over-relaxed ones do harm in necks of a cell */
   approach(v, b, o->tolerance * o->tolerance * s.second, o->max_iterations, x, &s, &report->iterations);
   return cf_varied_judge(v, &s, o, report);
 }
