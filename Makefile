@@ -6,11 +6,12 @@
 #   make            installs what is missing, builds build/bin/cattaneo (double) and build/bin/cattaneof (single)
 #   make demo       the same, then runs the main example and says where its pictures and data are (under out/)
 #   make test       the same, then every test but the long ones
-#   make test-long  every test, then those that are not long again under the sanitizers and valgrind (hours)
+#   make test-long  every test, then those that are not long again under the sanitizers and valgrind: hours of a core
 #   make gallery    makes every picture of the examples and the README (hours; may be stopped and called again)
 #   make fuzz       readers under libFuzzer (clang), FUZZ_SECONDS each: 3600
-#   make sanitize   every test but the long ones with the address, undefined-behaviour and thread sanitizers
-#   make valgrind   the tests of the floors under valgrind
+#   make sanitize   the tests with the address, undefined-behaviour and thread sanitizers, a few steps of every scene
+#                   among them; what would be long there is named in CMakePresets.json
+#   make valgrind   the tests of the floors under valgrind, but for those that would take minutes each
 #   make format     puts the C files into the project's form (clang-format)
 #   make lint       what can be said about the sources without running them
 #   make clean      removes build/
