@@ -2,7 +2,7 @@
  *
  * The cycle over split levels, as passes.
  *
- * The first part of a V-cycle (half sweeps on e = 0, restriction) is done in the pass that made its residual, and
+ * The first part of a cycle (half sweeps on e = 0, restriction) is done in the pass that made its residual, and
  * the second part (prolongation, half sweeps) begins the pass that takes the correction. Where the next
  * residual is expected to be small enough the pass ends there.
  */
@@ -14,9 +14,10 @@
 
 /* Half sweeps leave this much of the error on a coarsest level that is no line. */
 #define COARSEST_GAIN 0.02
-/* Sweeps after the coarse correction on levels below the finest. They cost little there, and with three in place of
- * one 5 cycles do what 6 did. */
-#define COARSE_SWEEPS 3
+/* Sweeps after the coarse correction on levels below the finest, where they cost little: in a V-cycle, with three in place of
+ * one 5 cycles do what 6 did; in a W-cycle. */
+#define COARSE_SWEEPS_V 3
+#define COARSE_SWEEPS_W 2
 /* A pass of half sweeps alone gains at most this, and has at most so many of them. */
 #define PASS_GAIN   1e-7
 #define PASS_SWEEPS 32
@@ -164,7 +165,7 @@ static void correct(const cf_box_solver *f, const int l) {
     correct_from(f, l + 1);
   }
   push(&up, CF_PASS_PROLONG, 0);
-  for (int v = 0; v < COARSE_SWEEPS; ++v) {
+  for (int v = 0; v < (f->thorough ? COARSE_SWEEPS_W : COARSE_SWEEPS_V); ++v) {
     push(&up, CF_PASS_RED, 0);
     push(&up, CF_PASS_BLACK, 0);
   }
