@@ -257,6 +257,37 @@ static void a_ball_costs_little(void **state) {
     }
 }
 
+/* Nothing fixes the level around a ball in an insulated box: x keeps the mean it came with, whatever mean b has, and cells
+ * that have no equation keep what is in them. */
+static void a_pocket_keeps_its_mean_and_walls_their_values(void **state) {
+  (void)state;
+  scene s;
+  scene_begin(&s, 3, 48, 48);
+  const cf_box *box = &s.g.box;
+  const cf_shape ball = cf_shape_sphere((double[]){0.47, 0.53, 0.5}, 0.23);
+  OK(cf_region_add(s.region, &ball, NULL, 0, CF_CELL_WALL, NULL));
+  OK(cf_region_update(s.region));
+  OK(cf_helmholtz_set(s.A, &(cf_coefficients){.alpha = 0, .beta = 1, .region = s.region}));
+  fill_side(&s);
+  for (int c = 0; c < 48 * 48 * 48; ++c) {
+    const ptrdiff_t p = cell_index(box, c);
+    s.x.at[p] = s.region->kind[p] == CF_CELL_INSIDE ? 3 : 7;
+  }
+  cf_solve_report report;
+  OK(cf_helmholtz_solve(s.A, s.b, &(cf_solve_options){1e-6, 100}, s.x, &report));
+  assert_true(report.converged && report.pockets == 1);
+  double sum = 0;
+  for (int c = 0; c < 48 * 48 * 48; ++c) {
+    const ptrdiff_t p = cell_index(box, c);
+    if (s.region->kind[p] == CF_CELL_INSIDE)
+      sum += (double)s.x.at[p];
+    else
+      assert_true(s.x.at[p] == 7);
+  }
+  BELOW(fabs(sum / (double)s.region->inside - 3), 1e-6);
+  scene_end(&s);
+}
+
 /* Plates that leave a gap at one side and the other in turn, one or two cells thick, wherever they lie. */
 static void slalom(const scene *s, const int plates, const int thickness) {
   const cf_box *b = &s->g.box;
@@ -487,6 +518,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(random_regions_match_elimination),
       cmocka_unit_test(a_ball_costs_little),
+      cmocka_unit_test(a_pocket_keeps_its_mean_and_walls_their_values),
       cmocka_unit_test(a_slalom_of_plates_costs_little),
       cmocka_unit_test(a_porous_block_takes_few_iterations),
       cmocka_unit_test(the_fast_path_solves_in_regions),
