@@ -122,6 +122,9 @@ double cf_poro_to_held(const cf_poro *w, const ptrdiff_t p, const ptrdiff_t q) {
   return full(w, p) / CF_MAX(NEAREST, CF_MIN(FARTHEST, d));
 }
 
+/* While another thread sets its next bit. */
+static int wet_at(const unsigned char *wet) { return __atomic_load_n(wet, __ATOMIC_RELAXED); }
+
 /* Within two cells of a wet surface the fill says where the surface is, not how much of a face there is: those cells
  * are found by widening the held ones along one axis after the other, a bit each. */
 static void find_wet(const cf_poro *w) {
@@ -133,8 +136,9 @@ static void find_wet(const cf_poro *w) {
   END_CELLS
   for (int a = 0; a < box->dim; ++a) FOR_CELLS(w, p) {
       const ptrdiff_t s = box->stride[a];
-      const int any = wet[p - 2 * s] | wet[p - s] | wet[p] | wet[p + s] | wet[p + 2 * s];
-      wet[p] = (unsigned char)(wet[p] | ((any >> a & 1) << (a + 1)));
+      const int here = wet[p], any = wet_at(&wet[p - 2 * s]) | wet_at(&wet[p - s]) | here |
+                                     wet_at(&wet[p + s]) | wet_at(&wet[p + 2 * s]);
+      __atomic_store_n(&wet[p], (unsigned char)(here | ((any >> a & 1) << (a + 1))), __ATOMIC_RELAXED);
     }
   END_CELLS
 }
