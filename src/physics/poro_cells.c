@@ -85,6 +85,9 @@ static void find_kinds(const cf_poro *w, const double t, const double *values) {
         }
 }
 
+/* At a byte of a neighbour, while another thread changes it in what is of no importance here. */
+static int look(const unsigned char *at) { return __atomic_load_n(at, __ATOMIC_RELAXED); }
+
 /* Free cells beside held ones. Reads only whether neighbours are held, which nobody changes here. */
 static void find_near(const cf_poro *w) {
   const cf_box *box = &w->grid->box;
@@ -92,9 +95,9 @@ static void find_near(const cf_poro *w) {
   FOR_CELLS(w, p) {
     if (kind[p] != CF_PORO_FREE) continue;
     for (int a = 0; a < box->dim; ++a)
-      if (kind[p + box->stride[a]] >= CF_PORO_HELD_SURFACE ||
-          kind[p - box->stride[a]] >= CF_PORO_HELD_SURFACE)
-        kind[p] = CF_PORO_NEAR;
+      if (look(&kind[p + box->stride[a]]) >= CF_PORO_HELD_SURFACE ||
+          look(&kind[p - box->stride[a]]) >= CF_PORO_HELD_SURFACE)
+        __atomic_store_n(&kind[p], CF_PORO_NEAR, __ATOMIC_RELAXED);
   }
   END_CELLS
 }
@@ -122,9 +125,6 @@ double cf_poro_to_held(const cf_poro *w, const ptrdiff_t p, const ptrdiff_t q) {
   return full(w, p) / CF_MAX(NEAREST, CF_MIN(FARTHEST, d));
 }
 
-/* While another thread sets its next bit. */
-static int wet_at(const unsigned char *wet) { return __atomic_load_n(wet, __ATOMIC_RELAXED); }
-
 /* Within two cells of a wet surface the fill says where the surface is, not how much of a face there is: those cells
  * are found by widening the held ones along one axis after the other, a bit each. */
 static void find_wet(const cf_poro *w) {
@@ -136,8 +136,8 @@ static void find_wet(const cf_poro *w) {
   END_CELLS
   for (int a = 0; a < box->dim; ++a) FOR_CELLS(w, p) {
       const ptrdiff_t s = box->stride[a];
-      const int here = wet[p], any = wet_at(&wet[p - 2 * s]) | wet_at(&wet[p - s]) | here |
-                                     wet_at(&wet[p + s]) | wet_at(&wet[p + 2 * s]);
+      const int here = wet[p], any = look(&wet[p - 2 * s]) | look(&wet[p - s]) | here | look(&wet[p + s]) |
+                                     look(&wet[p + 2 * s]);
       __atomic_store_n(&wet[p], (unsigned char)(here | ((any >> a & 1) << (a + 1))), __ATOMIC_RELAXED);
     }
   END_CELLS
