@@ -8,7 +8,8 @@
 #   make test       the same, then every test but the long ones
 #   make test-long  every test, then those that are not long again under the sanitizers and valgrind: hours of a core
 #   make gallery    makes every picture of the examples and the README (hours; may be stopped and called again)
-#   make fuzz       readers under libFuzzer (clang), FUZZ_SECONDS each: 3600
+#   make fuzz       readers under libFuzzer (clang), FUZZ_SECONDS each: 3600; other changes each time, or those of
+#                   FUZZ_SEED
 #   make sanitize   the tests with the address, undefined-behaviour and thread sanitizers, a few steps of every scene
 #                   among them; what would be long there is named in CMakePresets.json
 #   make valgrind   the tests of the floors under valgrind, but for those that would take minutes each
@@ -68,9 +69,10 @@ test-long: setup-tests
 	@$(MAKE) --no-print-directory sanitize valgrind
 
 FUZZ_SECONDS ?= 3600
+FUZZ_SEED ?= 0
 
 fuzz: setup-checks
-	@cmake --preset fuzz -DCATTANEO_FUZZ_SECONDS=$(FUZZ_SECONDS)
+	@cmake --preset fuzz -DCATTANEO_FUZZ_SECONDS=$(FUZZ_SECONDS) -DCATTANEO_FUZZ_SEED=$(FUZZ_SEED)
 	@cmake --build --preset fuzz --parallel $(JOBS)
 	@ctest --preset fuzz -j$(JOBS)
 
