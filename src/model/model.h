@@ -54,6 +54,10 @@ typedef struct cf_page {
   void *context;
 } cf_page;
 
+/* How a scalar diffuses: by its own plan (model/plan.h), in steps that the model takes with something else, or not by
+ * what the scene says of scalars. */
+typedef enum cf_scalar_law { CF_SCALAR_PLANNED, CF_SCALAR_COUPLED, CF_SCALAR_ELSEWHERE } cf_scalar_law;
+
 typedef struct cf_model {
   const char *name, *summary;
 
@@ -80,8 +84,8 @@ typedef struct cf_model {
   /* Bytes that a run needs at most, before anything is allocated. */
   double (*memory)(const cf_scene *scene);
 
-  /* Whether scene->fields.item[field] is a scalar with a diffusion of its own, for `check`. NULL: every one is. */
-  bool (*diffuses)(const cf_scene *scene, int field);
+  /* How scene->fields.item[field] diffuses, for `check`. NULL: every scalar by its plan. */
+  cf_scalar_law (*law)(const cf_scene *scene, int field);
 
   /* Adds what `check` should say of its own keys; `dt` is the step that will be taken, s. NULL: nothing. */
   cf_status (*check)(const cf_scene *scene, double dt, const cf_page *page);

@@ -111,7 +111,7 @@ int cf_crystal_substeps(const cf_phase_limits *l, double dt);
 cf_status cf_crystal_resolve(cf_scene *scene);
 cf_status cf_crystal_check(const cf_scene *scene, double dt, const cf_page *page);
 bool cf_crystal_shows(const cf_scene *scene, const char *name);
-bool cf_crystal_diffuses(const cf_scene *scene, int field);
+cf_scalar_law cf_crystal_law(const cf_scene *scene, int field);
 double cf_crystal_memory(const cf_scene *scene);
 
 bool cf_crystal_derived(const void *model, int i, cf_derived *field);

@@ -11,6 +11,8 @@
 
 enum { KEY_MAX = 160 };
 
+#define THICKNESS 6.2146 /* of the interface from 10 to 90 %, in widths */
+
 /* --- what goes together ----------------------------------------------------------------------------------- */
 
 static cf_status check_in_time(const cf_scene *scene, const cf_function *f, const char *key,
@@ -189,6 +191,20 @@ static void warn_anisotropy(const cf_scene *scene, const cf_phase_params *p, con
   page->warn(page->context, text);
 }
 
+/* Where the interface does not fit, nothing is ever all solid or all melt. */
+static void warn_width(const cf_scene *scene, const cf_phase_params *p, const cf_page *page) {
+  char text[300];
+  double least = INFINITY;
+  for (int a = 0; a < scene->dim; ++a) least = fmin(least, scene->domain.size.value[a]);
+  if (THICKNESS * p->width <= least) return;
+  snprintf(
+      text, sizeof text,
+      "phase.width = %.3g m: the interface, %.3g m thick, does not fit into the box of %.3g m; a width of "
+      "about half a cell, %.2g m, resolves it",
+      p->width, THICKNESS * p->width, least, scene->spacing / 2);
+  page->warn(page->context, text);
+}
+
 static void warn_grid(const cf_scene *scene, const cf_phase_params *p, const cf_page *page) {
   char text[300];
   if (scene->spacing <= 4 * p->width) return;
@@ -202,8 +218,8 @@ static void warn_grid(const cf_scene *scene, const cf_phase_params *p, const cf_
 cf_status cf_crystal_check(const cf_scene *scene, const double dt, const cf_page *page) {
   const cf_phase_params p = cf_crystal_params_at(scene, 0);
   char text[200];
-  snprintf(text, sizeof text, "%.4g m from 10 to 90 %%, %.3g cells", 6.2146 * p.width,
-           6.2146 * p.width / scene->spacing);
+  snprintf(text, sizeof text, "%.4g m from 10 to 90 %%, %.3g cells", THICKNESS * p.width,
+           THICKNESS * p.width / scene->spacing);
   page->row(page->context, "interface", text);
   const double psi = p.karma_rappel ? 0 : p.alpha / acos(-1) * atan(p.gamma * fabs(-1.0));
   const double theta = p.tau_eta > 0 && cf_phase_has_memory(&p) ? p.tau_1 / p.tau_eta : 0;
@@ -218,12 +234,14 @@ cf_status cf_crystal_check(const cf_scene *scene, const double dt, const cf_page
   page->row(page->context, "memory", text);
   warn_form(scene, &p, page);
   warn_anisotropy(scene, &p, page);
+  warn_width(scene, &p, page);
   warn_grid(scene, &p, page);
   return CF_OK;
 }
 
-bool cf_crystal_diffuses(const cf_scene *scene, const int field) {
-  return strcmp(scene->fields.item[field].name, "T") == 0;
+/* Heat is stepped with the phase, whatever plan.h would say of it alone; eta diffuses by the keys of `phase:`. */
+cf_scalar_law cf_crystal_law(const cf_scene *scene, const int field) {
+  return strcmp(scene->fields.item[field].name, "T") == 0 ? CF_SCALAR_COUPLED : CF_SCALAR_ELSEWHERE;
 }
 
 bool cf_crystal_shows(const cf_scene *scene, const char *name) {

@@ -174,7 +174,8 @@ static void add_memory(cf_check *c) {
     cf_space_bytes(machine, other);
     cf_writing_add(&c->warnings, "  the run may need %s, this machine has %s\n", one, other);
   }
-  const double frame = c->fits ? c->frame : guess_frame(c->scene), free = cf_space_free(".");
+  const double frame = c->sim != NULL ? cf_space_frame(c->sim) : guess_frame(c->scene),
+               free = cf_space_free(".");
   const double frames = c->scene->time.frames > 0 ? c->scene->time.end * c->scene->time.frames + 1 : 2;
   cf_space_bytes(frame, one);
   cf_space_bytes(frame * frames, other);
@@ -190,16 +191,28 @@ static void add_memory(cf_check *c) {
 
 /* As a run would begin; leaves the step that `dt: auto` takes. */
 static cf_status try_model(cf_check *c) {
-  cf_sim *sim;
-  c->fits = cf_space_memory(c->scene) < cf_space_machine() / 2;
   c->dt = c->scene->time.dt;
-  if (!c->fits) return CF_OK;
-  CF_TRY(cf_sim_create(&sim, c->scene, omp_get_num_procs()));
-  if (isnan(c->dt)) c->dt = sim->model->natural_dt(sim->state, 0);
-  c->frame = cf_space_frame(sim);
-  const cf_status status = cf_output_check(sim);
-  cf_sim_destroy(sim);
-  return status;
+  if (cf_space_memory(c->scene) >= cf_space_machine() / 2) {
+    cf_writing_add(&c->warnings,
+                   "  too large to be tried here: a run may still find something wrong at its start\n");
+    return CF_OK;
+  }
+  CF_TRY(cf_sim_create(&c->sim, c->scene, omp_get_num_procs()));
+  if (isnan(c->dt)) c->dt = c->sim->model->natural_dt(c->sim->state, 0);
+  return cf_output_check(c->sim);
+}
+
+/* What the model says of how it computes, "name: text", but of scalars that the page has already. */
+static void add_model(cf_check *c) {
+  const cf_model *model = cf_model_of(c->scene->model);
+  char line[CF_SENTENCE_MAX];
+  for (int i = 0; c->sim != NULL && model->describe != NULL; ++i) {
+    if (!model->describe(c->sim->state, i, line, sizeof line)) return;
+    char *end = strstr(line, ": ");
+    if (end == NULL) continue;
+    *end = '\0';
+    if (cf_scene_field_index(c->scene, line) < 0) add(c, line, end + 2);
+  }
 }
 
 static void row(void *context, const char *name, const char *text) { add(context, name, text); }
@@ -213,9 +226,6 @@ static cf_status write_page(cf_check *c) {
   cf_writing_add(&c->page, "%s: %s\n\n", cf_scene_path(c->scene),
                  c->scene->title[0] != '\0' ? c->scene->title : "without a title");
   CF_TRY(try_model(c));
-  if (!c->fits)
-    cf_writing_add(&c->warnings,
-                   "  too large to be tried here: a run may still find something wrong at its start\n");
   add_grid(c);
   add_walls(c, "walls", &c->scene->domain.walls.walls);
   if (cf_model_reads(model, "velocity")) CF_TRY(add_flow(c));
@@ -225,13 +235,14 @@ static cf_status write_page(cf_check *c) {
   warn_of_sources(c);
   for (int i = 0; i < c->scene->fields.count; ++i) {
     const cf_scene_field *field = &c->scene->fields.item[i];
-    if (cf_scene_name_is_flux(field->name) || (model->diffuses != NULL && !model->diffuses(c->scene, i)))
-      continue;
-    CF_TRY(cf_check_scalar(c, i));
+    const cf_scalar_law law = model->law != NULL ? model->law(c->scene, i) : CF_SCALAR_PLANNED;
+    if (cf_scene_name_is_flux(field->name) || law == CF_SCALAR_ELSEWHERE) continue;
+    CF_TRY(cf_check_scalar(c, i, law == CF_SCALAR_PLANNED));
     if (field->given.walls) add_walls(c, "  walls", &field->walls.walls);
   }
   const cf_page page = {.row = row, .warn = warn, .context = c};
-  if (c->fits) CF_TRY(cf_obstacles_check(c->scene, &page));
+  add_model(c);
+  if (c->sim != NULL) CF_TRY(cf_obstacles_check(c->scene, &page));
   return model->check != NULL ? model->check(c->scene, c->dt, &page) : CF_OK;
 }
 
@@ -240,6 +251,7 @@ cf_status cf_check_text(const cf_scene *scene, char **text) {
   char *warnings = NULL;
   *text = NULL;
   cf_status status = write_page(&c);
+  cf_sim_destroy(c.sim);
   const cf_status ended = cf_writing_end(&c.warnings, &warnings);
   if (status == CF_OK) status = ended;
   if (status == CF_OK)

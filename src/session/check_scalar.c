@@ -75,7 +75,7 @@ typedef struct numbers {
   bool waves;
   double dt; /* of a step between two frames, s */
   cf_plan plan;
-  bool implicit; /* the plan is */
+  bool planned, implicit; /* the plan counts; it is implicit */
 } numbers;
 
 static cf_status find_numbers(const cf_check *c, const int field, numbers *n) {
@@ -211,7 +211,7 @@ static void add_step(cf_check *c, const numbers *n) {
     cf_writing_add(&c->warnings,
                    "  dt is %.3g tau: memory of %.40s is over within a step, which leaves Fourier's law\n",
                    n->dt / tau, name);
-  else if (n->implicit && cells > CELLS_A_STEP)
+  else if (n->planned && n->implicit && cells > CELLS_A_STEP)
     cf_writing_add(&c->warnings,
                    "  fronts of %.40s cross %.3g cells a step and get smeared: time.dt of %.2g s or less\n",
                    name, cells, CELLS_A_STEP * h / n->c);
@@ -253,7 +253,7 @@ static cf_status add_scheme(cf_check *c, const numbers *n) {
   const double delta = (paper ? 1 : 1 - sqrt(0.5)) * n->dt, h = c->scene->spacing;
   const double sigma = cf_regime_sigma(cf_regime_stage(delta, n->d->tau, n->d->f_t), n->D, h);
   add(c, "scheme", n->plan.why);
-  if (n->implicit && c->fits) {
+  if (n->implicit && c->sim != NULL) {
     CF_TRY(describe_solver(c->scene, n, sigma, text, sizeof text));
     add(c, "solver", text);
   }
@@ -269,8 +269,8 @@ static cf_status add_scheme(cf_check *c, const numbers *n) {
 
 /* --- everything ------------------------------------------------------------------------------------------- */
 
-cf_status cf_check_scalar(cf_check *c, const int field) {
-  numbers n;
+cf_status cf_check_scalar(cf_check *c, const int field, const bool planned) {
+  numbers n = {.planned = planned};
   CF_TRY(find_numbers(c, field, &n));
   cf_writing_add(&c->page, "\n%s\n", n.field->name);
   add_law(c, &n);
@@ -278,6 +278,7 @@ cf_status cf_check_scalar(cf_check *c, const int field) {
   add_stream(c, &n);
   add_words(c, &n);
   add_step(c, &n);
+  if (!planned) return CF_OK;
   if (n.D > 0) CF_TRY(add_scheme(c, &n));
   if (n.waves && n.d->f_t < 0.1 && !n.plan.positive)
     add(c, "note", "values may fall below 0 where fronts meet, as those of the exact solution do");

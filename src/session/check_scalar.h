@@ -8,14 +8,14 @@
 
 #include "io/scene_text.h"
 #include "model/scene.h"
+#include "model/sim.h"
 
 /* What the parts of `check` know of a scene. */
 typedef struct cf_check {
   const cf_scene *scene;
   double dt;    /* s, of a step that is not shortened */
   double speed; /* the largest |u| at time 0, m/s */
-  bool fits;    /* the machine has the memory for a run */
-  double frame; /* bytes of one, where it does */
+  cf_sim *sim;  /* as a run would begin; NULL: too large to be tried */
   cf_writing page, warnings;
 } cf_check;
 
@@ -30,7 +30,8 @@ typedef struct cf_extremes {
 /* `key` is where an error points. CF_BAD_SCENE: not finite somewhere. */
 cf_status cf_check_sample(const cf_scene *scene, const cf_fn *f, const char *key, cf_extremes *e);
 
-/* Adds the lines of scene->fields.item[field] to the page, and what is unlucky to the warnings. */
-cf_status cf_check_scalar(cf_check *c, int field);
+/* Adds the lines of scene->fields.item[field] to the page, and what is unlucky to the warnings; of the scheme only
+ * where the scalar has a plan of its own. */
+cf_status cf_check_scalar(cf_check *c, int field, bool planned);
 
 #endif

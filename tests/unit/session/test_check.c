@@ -23,11 +23,19 @@ static const char ring[] =
     "diffusion: {k: 0.02, tau: 0.5}\n"
     "velocity: [\"0.4*x\", \"0\"]\n";
 
-/* The scene `ring` with overrides, by way of a file. */
-static cf_scene *scene_of(const int overrides, const char *const *set) {
+static const char crystal[] =
+    "cattaneo: 1\n"
+    "model: phase\n"
+    "domain: {size: [2, 1], cells: [64, 32]}\n"
+    "time: {end: 0.01}\n"
+    "diffusion: {k: 1, tau: 1e-4}\n"
+    "phase: {width: 0.016, tau_eta: 3e-4, tau_1: 3e-4}\n";
+
+/* A text with overrides, by way of a file. */
+static cf_scene *scene_of_text(const char *yaml, const int overrides, const char *const *set) {
   char path[] = "/tmp/cattaneo-check-XXXXXX";
   const int file = mkstemp(path);
-  assert_true(file >= 0 && write(file, ring, sizeof ring - 1) == sizeof ring - 1);
+  assert_true(file >= 0 && write(file, yaml, strlen(yaml)) == (ssize_t)strlen(yaml));
   close(file);
   cf_scene *scene = NULL;
   OK(cf_scene_read(&scene, path, overrides, set));
@@ -35,10 +43,14 @@ static cf_scene *scene_of(const int overrides, const char *const *set) {
   return scene;
 }
 
+static cf_scene *scene_of(const int overrides, const char *const *set) {
+  return scene_of_text(ring, overrides, set);
+}
+
 /* The page, until the next one. */
-static const char *page(const int overrides, const char *const *set) {
+static const char *page_of_text(const char *yaml, const int overrides, const char *const *set) {
   static char kept[8192];
-  cf_scene *scene = scene_of(overrides, set);
+  cf_scene *scene = scene_of_text(yaml, overrides, set);
   char *text = NULL;
   OK(cf_check_text(scene, &text));
   assert_true(strlen(text) < sizeof kept);
@@ -46,6 +58,10 @@ static const char *page(const int overrides, const char *const *set) {
   cf_free(text);
   cf_scene_destroy(scene);
   return kept;
+}
+
+static const char *page(const int overrides, const char *const *set) {
+  return page_of_text(ring, overrides, set);
 }
 
 #define PAGE(...) \
@@ -163,6 +179,24 @@ static void check_warns_of_obstacles_nowhere_and_everywhere(void **state) {
   assert_null(strstr(PAGE("obstacles=[{shape: sphere, center: [0, 0], radius: 0.5}]"), "no cell"));
 }
 
+static void check_has_the_words_of_a_crystal(void **state) {
+  (void)state;
+  const char *text = page_of_text(crystal, 0, NULL);
+  has(text, "front speed   100 m/s");
+  has(text, "phase and heat  explicit, 1 substep of three stages a step");
+  assert_null(strstr(text, "leapfrog")); /* so T alone would go */
+  assert_null(strstr(text, "below 0"));
+  has(page_of_text(crystal, 1, (const char *[]){"phase.scheme=implicit"}),
+      "phase and heat  implicit, two stages of the phase and two of heat a step: the scene says so");
+}
+
+static void check_warns_of_an_interface_thicker_than_the_box(void **state) {
+  (void)state;
+  assert_null(strstr(page_of_text(crystal, 1, (const char *[]){"phase.width=0.16"}), "does not fit"));
+  has(page_of_text(crystal, 1, (const char *[]){"phase.width=0.17"}),
+      "the interface, 1.06 m thick, does not fit into the box of 1 m");
+}
+
 static void check_survives_any_failed_allocation(void **state) {
   (void)state;
   cf_scene *scene = scene_of(0, NULL);
@@ -191,6 +225,8 @@ int main(void) {
       cmocka_unit_test(check_finds_what_only_a_grid_can_tell),
       cmocka_unit_test(check_warns_of_sources_outside_the_box),
       cmocka_unit_test(check_warns_of_obstacles_nowhere_and_everywhere),
+      cmocka_unit_test(check_has_the_words_of_a_crystal),
+      cmocka_unit_test(check_warns_of_an_interface_thicker_than_the_box),
       cmocka_unit_test(check_survives_any_failed_allocation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
