@@ -133,10 +133,11 @@ static void correct_around(const cf_box_solver *f) {
 
 static void correct(const cf_box_solver *f, int l);
 
-/* The same, with the ghosts that interpolation reads. */
+/* The same, with the ghosts that interpolation reads, where the stages have not set them. */
 static void correct_from(const cf_box_solver *f, const int l) {
+  const cf_split *s = &f->level[l];
   correct(f, l);
-  cf_split_fill_seams(&f->level[l], f->level[l].e);
+  if (cf_split_needs_ghosts(s) || cf_level_is_solved_directly(s->plain)) cf_split_fill_seams(s, s->e);
 }
 
 /* e from r on level l, whose first half sweep is done. */

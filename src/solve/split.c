@@ -142,6 +142,8 @@ static bool are_even(const cf_split *s) {
 void cf_split_set(cf_split *s, const double alpha, const double beta, const double scale,
                   const double omega[4]) {
   s->alpha = (float)(alpha / scale);
+  for (int a = 0; a < s->dim; ++a)
+    s->wraps[a] = s->plain->axis[a].periodic && s->n[a] > 1 && !s->odd_seam && s->segments == NULL;
   for (int v = 0; v < 4; ++v) s->omega[v] = (float)omega[v];
   for (int a = 0; a < s->dim; ++a)
     for (int i = 0; i < s->n[a]; ++i) {

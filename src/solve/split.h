@@ -40,7 +40,9 @@ typedef struct cf_split {
   float *e, *r;                       /* correction and residual, at cell (0, 0, 0) */
   const struct cf_segments *segments; /* NULL: the whole box */
   bool has_seam;                      /* some axis is periodic */
-  bool odd_seam;       /* ... with an odd number of cells: neighbours across the seam share a colour */
+  bool odd_seam; /* ... with an odd number of cells: neighbours across the seam share a colour */
+  bool wraps
+      [3]; /* periodic axes whose seam the stages cross by themselves; not next to an odd one, nor with segments */
   bool even_couplings; /* the same in all axes and places, but for walls */
 
   float alpha, coupling;  /* scaled; coupling: in the middle of the box */
@@ -63,8 +65,13 @@ void cf_split_destroy(cf_split *s); /* a zeroed one is fine */
 /* Coefficients alpha and beta over `scale`; omega of the half sweeps. */
 void cf_split_set(cf_split *s, double alpha, double beta, double scale, const double omega[4]);
 
-/* Ghosts of periodic axes. */
+/* Ghosts of periodic axes, as those read them who do not cross seams by themselves. */
 void cf_split_fill_seams(const cf_split *s, float *f);
+
+/* Whether ghosts have to be filled between stages. */
+static inline bool cf_split_needs_ghosts(const cf_split *s) {
+  return s->has_seam && !s->wraps[0] && !s->wraps[1] && !s->wraps[2];
+}
 
 /* The row of 1/diagonal that row (j, k) uses. */
 static inline int cf_split_kind(const cf_split *s, const int j, const int k) {

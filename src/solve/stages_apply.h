@@ -19,11 +19,11 @@ CF_KERNEL float cf_skewed(const float lo, const float hi, const float below, con
 CF_KERNEL float cf_applied_at_edge(const int dim, const cf_half *h, const int m) {
   const float *e = h->e + m, *side = h->side + m, c = e[0];
   const int faces = h->faces[m];
-  const float x[2] = {c - side[0], side[1] - c}, y[2] = {c - e[-h->y], e[h->y] - c};
+  const float x[2] = {c - side[0], side[1] - c}, y[2] = {c - e[h->y[0]], e[h->y[1]] - c};
   float sum = (faces & 1 ? x[0] : 0) - (faces & 2 ? x[1] : 0);
   sum += (faces & 4 ? y[0] : 0) - (faces & 8 ? y[1] : 0);
   if (dim == 3) {
-    const float z[2] = {c - e[-h->z], e[h->z] - c};
+    const float z[2] = {c - e[h->z[0]], e[h->z[1]] - c};
     sum += (faces & 16 ? z[0] : 0) - (faces & 32 ? z[1] : 0);
   }
   return h->alpha * c + h->coupling * (sum + (float)h->held[m] * c);
@@ -36,12 +36,12 @@ CF_KERNEL float cf_applied(const int dim, const int inner, const cf_half *h, con
   const float *e = h->e + m, *side = h->side + m;
   const float c = e[0], x = (c - side[0]) - (side[1] - c);
   if (inner) {
-    const float y = (c - e[-h->y]) - (e[h->y] - c);
-    const float z = dim == 3 ? (c - e[-h->z]) - (e[h->z] - c) : 0;
+    const float y = (c - e[h->y[0]]) - (e[h->y[1]] - c);
+    const float z = dim == 3 ? (c - e[h->z[0]]) - (e[h->z[1]] - c) : 0;
     return h->alpha * c + h->coupling * (dim == 3 ? (x + y) + z : x + y);
   }
-  float sum = h->coupling * x + cf_skewed(h->lo_y, h->hi_y, e[-h->y], c, e[h->y]);
-  if (dim == 3) sum += cf_skewed(h->lo_z, h->hi_z, e[-h->z], c, e[h->z]);
+  float sum = h->coupling * x + cf_skewed(h->lo_y, h->hi_y, e[h->y[0]], c, e[h->y[1]]);
+  if (dim == 3) sum += cf_skewed(h->lo_z, h->hi_z, e[h->z[0]], c, e[h->z[1]]);
   return h->alpha * c + sum;
 }
 

@@ -20,32 +20,41 @@ typedef struct cf_half {
   float *side;
   const float *lo, *hi, *inverse, *diagonal;
   const unsigned char *faces, *held; /* on an edge segment (segments.h) */
-  ptrdiff_t y, z;
+  ptrdiff_t y[2], z[2];              /* to the rows below and above */
   float lo_y, hi_y, lo_z, hi_z, alpha, coupling;
   int parity;
 } cf_half;
+
+/* The row below row i of an axis, and the one above it: next to a seam those at the other end. */
+CF_KERNEL ptrdiff_t cf_step_down(const cf_split *s, const int a, const int i, const ptrdiff_t stride) {
+  return s->wraps[a] && i == 0 ? (s->n[a] - 1) * stride : -stride;
+}
+CF_KERNEL ptrdiff_t cf_step_up(const cf_split *s, const int a, const int i, const ptrdiff_t stride) {
+  return s->wraps[a] && i == s->n[a] - 1 ? -(s->n[a] - 1) * stride : stride;
+}
 
 CF_KERNEL cf_half cf_half_of(const int dim, const cf_split *s, const int j, const int k, const int colour) {
   const int parity = (j + k + colour) & 1;
   const int kind = s->kind[1][j] * CF_SPLIT_KINDS + (dim == 3 ? s->kind[2][k] : 0);
   const ptrdiff_t at = j * s->row + k * s->plane, off = parity ? s->odd : 0;
   float *row = s->e + at;
-  return (cf_half){.e = row + off,
-                   .r = s->r + at + off,
-                   .side = parity ? row : row + s->odd - 1,
-                   .lo = s->lo[0] + off,
-                   .hi = s->hi[0] + off,
-                   .inverse = s->inverse[kind] + off,
-                   .diagonal = s->diagonal[kind] + off,
-                   .y = s->row,
-                   .z = s->plane,
-                   .lo_y = s->lo[1][j],
-                   .hi_y = s->hi[1][j],
-                   .lo_z = dim == 3 ? s->lo[2][k] : 0,
-                   .hi_z = dim == 3 ? s->hi[2][k] : 0,
-                   .alpha = s->alpha,
-                   .coupling = s->coupling,
-                   .parity = parity};
+  return (cf_half){
+      .e = row + off,
+      .r = s->r + at + off,
+      .side = parity ? row : row + s->odd - 1,
+      .lo = s->lo[0] + off,
+      .hi = s->hi[0] + off,
+      .inverse = s->inverse[kind] + off,
+      .diagonal = s->diagonal[kind] + off,
+      .y = {cf_step_down(s, 1, j, s->row), cf_step_up(s, 1, j, s->row)},
+      .z = {dim == 3 ? cf_step_down(s, 2, k, s->plane) : 0, dim == 3 ? cf_step_up(s, 2, k, s->plane) : 0},
+      .lo_y = s->lo[1][j],
+      .hi_y = s->hi[1][j],
+      .lo_z = dim == 3 ? s->lo[2][k] : 0,
+      .hi_z = dim == 3 ? s->hi[2][k] : 0,
+      .alpha = s->alpha,
+      .coupling = s->coupling,
+      .parity = parity};
 }
 
 #define CF_FOR_ROWS(j, t) for (int j = (t)->j; j < (t)->end; ++j)
@@ -61,18 +70,27 @@ CF_KERNEL cf_half cf_half_of(const int dim, const cf_split *s, const int j, cons
 CF_KERNEL float cf_around(const int dim, const int even, const cf_half *h, const int m) {
   const float *e = h->e + m, *side = h->side + m;
   if (even) {
-    const float plane = (side[0] + side[1]) + (e[-h->y] + e[h->y]);
-    return h->coupling * (dim == 3 ? plane + (e[-h->z] + e[h->z]) : plane);
+    const float plane = (side[0] + side[1]) + (e[h->y[0]] + e[h->y[1]]);
+    return h->coupling * (dim == 3 ? plane + (e[h->z[0]] + e[h->z[1]]) : plane);
   }
-  float sum = (h->lo[m] * side[0] + h->hi[m] * side[1]) + (h->lo_y * e[-h->y] + h->hi_y * e[h->y]);
-  if (dim == 3) sum += h->lo_z * e[-h->z] + h->hi_z * e[h->z];
+  float sum = (h->lo[m] * side[0] + h->hi[m] * side[1]) + (h->lo_y * e[h->y[0]] + h->hi_y * e[h->y[1]]);
+  if (dim == 3) sum += h->lo_z * e[h->z[0]] + h->hi_z * e[h->z[1]];
   return sum;
 }
 
+/* After the half has changed: its ghost behind the seam in x, beside which the other half's end cell lies. The last piece
+ * of a row, whose padding the ghost of an even half is in, sets it as well as the piece with the cell that it shows. */
+CF_KERNEL void cf_half_join(const cf_split *s, const cf_strip *t, const cf_half *h) {
+  if (!s->wraps[0]) return;
+  if (h->parity == 1 && t->to == s->width) h->e[-1] = h->e[s->half[1] - 1];
+  if (h->parity == 0 && (t->from == 0 || t->to == s->width)) h->e[s->half[0]] = h->e[0];
+}
+
 /* e = omega r / d on one half of a row. */
-CF_KERNEL void cf_first_half(const cf_half *of, const cf_strip *t, const float omega) {
+CF_KERNEL void cf_first_half(const cf_split *s, const cf_half *of, const cf_strip *t, const float omega) {
   const cf_half h = *of;
   CF_FOR_PIECE(m, t) h.e[m] = omega * h.inverse[m] * h.r[m];
+  cf_half_join(s, t, of);
 }
 
 /* Asks for the piece of both halves of a row that starts at `row` to come into the cache. */

@@ -18,6 +18,7 @@ CF_KERNEL void last_rows(const int dim, const cf_split *s, const cf_strip *t, co
     else
       cf_last_half(dim, 0, &black, t, omega, 1);
     cf_clear_pad(s, t, &black);
+    cf_half_join(s, t, &black);
     cf_half_set_images(s, t, &red, 1);
   }
 }
@@ -59,7 +60,7 @@ CF_KERNEL void update_rows(const int dim, const cf_pass *p, const cf_strip *t, c
     cf_real *x = p->x + cf_box_at(&s->plain->box, 2 * t->from, j, t->k);
     add(n, p->gain, p->lift, s->e + at, s->e + at + s->odd, x);
     if (s->odd_seam) {
-      cf_first_half(&red, t, omega);
+      cf_first_half(s, &red, t, omega);
     } else {
       cf_half_set_images(s, t, &black, 0);
       if (cf_half_is_inner(dim, &red))
@@ -67,6 +68,7 @@ CF_KERNEL void update_rows(const int dim, const cf_pass *p, const cf_strip *t, c
       else
         cf_restart_half(dim, 0, &red, t, omega, 1);
       cf_clear_pad(s, t, &red);
+      cf_half_join(s, t, &red);
     }
     double *sums = cf_sums_of(p, t, j);
     sums[CF_SUM_RESIDUAL * p->sums] = cf_squares(t->to - t->from, s->r + at, s->r + at + s->odd);

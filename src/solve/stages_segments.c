@@ -64,7 +64,7 @@ CF_KERNEL void first(const int dim, const cf_split *s, const cf_strip *t, const 
   CF_FOR_ROWS(j, t)
   FOR_PIECES(s, t, j, q) {
     const cf_half red = half_of(dim, s, &q, 0);
-    cf_first_half(&red, &q.strip, omega);
+    cf_first_half(s, &red, &q.strip, omega);
   }
 }
 

@@ -9,7 +9,7 @@
 CF_KERNEL void first(const int dim, const cf_split *s, const cf_strip *t, const float omega) {
   CF_FOR_ROWS(j, t) {
     const cf_half red = cf_half_of(dim, s, j, t->k, 0);
-    cf_first_half(&red, t, omega);
+    cf_first_half(s, &red, t, omega);
   }
 }
 CF_CLONES static void first_2d(const cf_split *s, const cf_strip *t, const float omega) {
@@ -40,6 +40,7 @@ CF_KERNEL void relax(const int dim, const int even, const int way, const cf_spli
       const float e = h.inverse[m] * (h.r[m] + cf_around(dim, even, &h, m));
       h.e[m] = way == ANEW ? e : way == SECOND ? omega * e : keep * h.e[m] + omega * e;
     }
+    cf_half_join(s, t, &h);
   }
 }
 

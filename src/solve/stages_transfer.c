@@ -60,7 +60,7 @@ CF_KERNEL void start_coarse(const int dim, const cf_split *c, const cf_strip *t)
     return;
   }
   const cf_half red = cf_half_of(dim, c, t->j, t->k, 0);
-  cf_first_half(&red, t, c->omega[0]);
+  cf_first_half(c, &red, t, c->omega[0]);
 }
 
 /* The first child of the parent of i along an axis; -1 if i is not its last child. */
@@ -160,6 +160,13 @@ CF_KERNEL void spread(const cf_half *h, const cf_split *s, const cf_strip *t, co
   const float *own = s->own + off, *away = s->away + off, *next = line + (h->parity ? 1 : -1);
   float *e = h->e;
   CF_FOR_PIECE(m, t) e[m] += own[m] * line[m] + away[m] * next[m];
+  cf_half_join(s, t, h);
+}
+
+/* Of an axis of the coarse level: a place that may lie behind a seam. */
+CF_KERNEL int place_of(const cf_split *c, const int a, const int i) {
+  if (!c->plain->axis[a].periodic) return i;
+  return i < 0 ? i + c->n[a] : i >= c->n[a] ? i - c->n[a] : i;
 }
 
 /* In y and z first (a fine row has up to four coarse ones: parent and other along either axis), then along x. Red cells
@@ -177,8 +184,8 @@ CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t, 
       cf_fetch_halves(s, t, s->r + cf_next_row(s, t, j));
     }
     for (int v = 0; v < 2 * (dim - 1); ++v) {
-      const int row = v % 2 == 0 ? y->parent[j] : y->other[j];
-      const int plane = dim == 2 ? 0 : v < 2 ? z->parent[t->k] : z->other[t->k];
+      const int row = place_of(c, 1, v % 2 == 0 ? y->parent[j] : y->other[j]);
+      const int plane = dim == 2 ? 0 : place_of(c, 2, v < 2 ? z->parent[t->k] : z->other[t->k]);
       x.row[v] = c->e + row * c->row + plane * c->plane + q0;
       x.weight[v] = (float)(y->weight[v % 2][j] * (dim == 2 ? 1 : z->weight[v / 2][t->k]));
     }

@@ -93,7 +93,7 @@ static void run_stages(const cf_wave *w, const cf_pass *p, const window *win) {
   const int rows = win->j_end - win->j, height = strip_height(win, threads),
             strips = (rows + height - 1) / height;
   for (int v = 0; v < p->count; ++v) {
-    if (s->has_seam && cf_stage_reads_around(p->stage[v])) cf_split_fill_seams(s, s->e);
+    if (cf_split_needs_ghosts(s) && cf_stage_reads_around(p->stage[v])) cf_split_fill_seams(s, s->e);
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int q = 0; q < strips * (win->k_end - win->k); ++q)
       for (int piece = 0; piece < pieces; ++piece) {
@@ -111,45 +111,89 @@ static void wait_for(const struct cf_wave_mark *mark, const int planes) {
     if (spins > 2000) sched_yield();
 }
 
-/* A tile's rows, and how many planes there are (in 2D: pieces). */
+/* Places [begin, end) along an axis of `count`; those from `count` on are counted around the seam. */
+typedef struct range {
+  int begin, end, count;
+} range;
+
+/* Those of a stage. On an axis that wraps it begins a place after the stage before it, so that it finds that one done on
+ * either side, and goes around to where it began. Restriction, which takes cells in pairs, begins with a whole one. */
+static range range_of(const cf_pass *p, const int stage, const bool wraps, const int begin, const int end) {
+  const bool pairs = p->stage[stage] == CF_PASS_RESTRICT || p->stage[stage] == CF_PASS_RESTRICT_RED;
+  const int late = !wraps ? 0 : pairs ? stage + stage % 2 : stage;
+  return (range){begin + late, end + late, end};
+}
+
+static int place(const range *r, const int i) { return i % r->count; }
+
+/* What a pass does, over how many planes (in 2D: pieces), and rows [j, end) of a tile. */
 typedef struct tile {
-  window win;
-  int j, end, planes;
+  range rows[CF_PASS_STAGES], planes[CF_PASS_STAGES];
+  int j, end, steps;
 } tile;
 
-/* The strip that the same stage, number v, will have next: further up in the tile, or in the next plane. */
-static void set_next(const tile *at, const int v, cf_strip *t) {
-  const int end = CF_MIN(at->end - v, at->win.j_end), height = t->end - t->j;
+/* The strip that the same stage, number v, will have next: further up in the tile, or in the next plane. `plane` is the one it
+ * has. */
+static void set_next(const cf_split *s, const tile *at, const int v, const int plane, cf_strip *t) {
+  const range *rows = &at->rows[v], *planes = &at->planes[v];
+  const int end = CF_MIN(at->end - v, rows->end), height = t->end - t->j;
   t->next_j = t->end;
   t->next_k = t->k;
-  if (t->end + height <= end) return;
-  t->next_j = CF_MAX(at->j - v, at->win.j);
-  t->next_k = t->k + 1 < at->win.k_end && t->next_j + height <= at->win.j_end ? t->k + 1 : -1;
+  if (t->end + height <= CF_MIN(end, rows->count)) return;
+  t->next_j = CF_MAX(at->j - v, rows->begin);
+  const bool is_there = s->dim == 3 && plane + 1 < planes->end && t->next_j + height <= rows->count;
+  t->next_k = is_there ? place(planes, plane + 1) : -1;
+}
+
+/* Stage v on rows [j, end) of a plane. */
+static void run_stage(const cf_wave *w, const cf_pass *p, const tile *at, const int v, const int j,
+                      const int end, const int plane) {
+  const cf_split *s = p->at;
+  const int here = place(&at->planes[v], plane);
+  cf_strip t = strip_of(w, s, j, end, s->dim == 3 ? here : 0, s->dim == 3 ? 0 : here);
+  set_next(s, at, v, plane, &t);
+  cf_stage_run(p, v, &t);
 }
 
 /* All stages on rows [j, end), each a row lower than the one before. */
 static void run_block(const cf_wave *w, const cf_pass *p, const tile *at, const int j, const int end,
                       const int step) {
-  const cf_split *s = p->at;
   for (int v = 0; v < p->count; ++v) {
-    const int low = CF_MAX(j - v, at->win.j), high = CF_MIN(end - v, at->win.j_end), plane = step - v;
-    if (low >= high || plane < 0 || plane >= at->planes) continue;
-    cf_strip t = strip_of(w, s, low, high, s->dim == 3 ? at->win.k + plane : 0, s->dim == 3 ? 0 : plane);
-    set_next(at, v, &t);
-    cf_stage_run(p, v, &t);
+    const range *rows = &at->rows[v], *planes = &at->planes[v];
+    const int low = CF_MAX(j - v, rows->begin), high = CF_MIN(end - v, rows->end), plane = step - v;
+    if (low >= high || plane < planes->begin || plane >= planes->end) continue;
+    for (int from = low, to; from < high; from = to) { /* on either side of the seam */
+      const int here = place(rows, from);
+      to = CF_MIN(high, from + rows->count - here);
+      run_stage(w, p, at, v, here, here + to - from, plane);
+    }
   }
+}
+
+static tile tile_of(const cf_pass *p, const window *win) {
+  const cf_split *s = p->at;
+  const bool deep = s->dim == 3;
+  const int k = deep ? win->k : 0, k_end = deep ? win->k_end : cf_wave_pieces(s);
+  tile at = {.j = win->j};
+  for (int v = 0; v < p->count; ++v) {
+    at.rows[v] = range_of(p, v, s->wraps[1], win->j, win->j_end);
+    at.planes[v] = range_of(p, v, s->wraps[deep ? 2 : 0], k, k_end);
+    at.end = CF_MAX(at.end, at.rows[v].end + v);
+    at.steps = CF_MAX(at.steps, at.planes[v].end + v - k);
+  }
+  return at;
 }
 
 static void run_tile(const cf_wave *w, const cf_pass *p, const window *win, const int number,
                      const int height, const int tiles) {
-  const cf_split *s = p->at;
-  tile at = {.win = *win, .j = win->j + number * height};
-  at.planes = s->dim == 3 ? win->k_end - win->k : cf_wave_pieces(s);
-  at.end = number + 1 < tiles ? at.j + height : win->j_end + p->count - 1;
-  for (int step = 0; step < at.planes + p->count - 1; ++step) {
+  tile at = tile_of(p, win);
+  const int first = p->at->dim == 3 ? win->k : 0;
+  at.j += number * height;
+  if (number + 1 < tiles) at.end = at.j + height;
+  for (int step = 0; step < at.steps; ++step) {
     if (number > 0) wait_for(&w->done[number - 1], step + 1);
     for (int j = at.j; j < at.end; j += BLOCK_ROWS)
-      run_block(w, p, &at, j, CF_MIN(j + BLOCK_ROWS, at.end), step);
+      run_block(w, p, &at, j, CF_MIN(j + BLOCK_ROWS, at.end), first + step);
     atomic_store_explicit(&w->done[number].planes, step + 1, memory_order_release);
   }
 }
@@ -169,7 +213,7 @@ void cf_wave_run(const cf_wave *w, const cf_pass *p) {
   const ptrdiff_t cells = (ptrdiff_t)s->n[0] * s->n[1] * s->n[2];
   const window win = window_of(s);
   if (win.j >= win.j_end) return;
-  if (s->has_seam || cells < SERIAL_CELLS) {
+  if (w->plain || cf_split_needs_ghosts(s) || cells < SERIAL_CELLS) {
     run_stages(w, p, &win);
     return;
   }

@@ -18,7 +18,19 @@
  * Half sweeps of one colour do not depend on the order of rows, and sums have a place for every row: the bits of the
  * result depend neither on the threads nor on the tiles.
  *
- * Levels with periodic axes, and small ones, go stage by stage instead.
+ * On a periodic axis of an even number of cells every stage begins a row, or a plane, further than the stage before it, goes
+ * around, and ends where it began:
+ *
+ *     rows      0 1 2 3 4 5 6 7     stage 2 finds stage 1 done on 1, 2 and 3 when it begins on 2; when it comes to 0,
+ *     stage 0   0 1 2 3 4 5 6 7     stage 1 has been there, and nothing that stage 2 reads has changed since:
+ *     stage 1   7 0 1 2 3 4 5 6     half sweeps read the other colour
+ *     stage 2   6 7 0 1 2 3 4 5     (numbers: the order)
+ *
+ * so that the last tile, which holds the rows around the seam, waits for the others as for its neighbour. Between y and z nothing
+ * is copied (cf_step_down); in x the end cells of a half row have ghosts (cf_half_join).
+ *
+ * Levels on which neighbours across a seam share a colour, and small ones, go stage by stage instead, and so do segments
+ * in a box with seams.
  */
 #ifndef CF_SOLVE_WAVE_H
 #define CF_SOLVE_WAVE_H
@@ -28,6 +40,7 @@
 /* One a hierarchy: what runs need, made for its finest level. */
 typedef struct cf_wave {
   int threads, tiles; /* at most */
+  bool plain;         /* stage by stage: what all at once must agree with to the bit */
   size_t scratch_size;
   char *scratch;             /* a piece for each thread */
   struct cf_wave_mark *done; /* planes finished, a tile */
