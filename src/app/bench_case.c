@@ -92,7 +92,7 @@ static bool wants_no_mean(const cf_bench_case *c) {
 static cf_status remove_mean(const cf_grid *g, const cf_cell b) {
   double *rows;
   CF_TRY(CF_NEW(&rows, 3 * cf_box_rows(&g->box)));
-  const double mean = cf_sweep_range(&g->box, g->threads, b.at, rows).sum / (double)cf_box_cells(&g->box);
+  const double mean = cf_sweep_sum(&g->box, g->threads, b.at, rows) / (double)cf_box_cells(&g->box);
   cf_free(rows);
   CF_PARALLEL_ROWS (&g->box, g->threads, r)
     for (int i = 0; i < g->box.n[0]; ++i) b.at[cf_box_row(&g->box, r) + i] -= (cf_real)mean;

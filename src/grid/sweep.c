@@ -23,6 +23,11 @@ CF_CLONES double cf_sweep_row_sum(const int n, const cf_real *f) {
   return cf_sum_lanes(lane);
 }
 
+double cf_sweep_sum(const cf_box *b, const int threads, const cf_real *f, double *rows) {
+  CF_PARALLEL_ROWS (b, threads, r) rows[r] = cf_sweep_row_sum(b->n[0], f + cf_box_row(b, r));
+  return cf_sum_ordered(rows, cf_box_rows(b));
+}
+
 CF_CLONES static void row_ends(const int n, const cf_real *row, cf_real *min, cf_real *max) {
   cf_real least = row[0], largest = row[0];
 #pragma omp simd reduction(min : least) reduction(max : largest)

@@ -115,6 +115,9 @@ typedef struct cf_range {
 } cf_range;
 cf_range cf_sweep_range(const cf_box *b, int threads, const cf_real *f, double *rows);
 
+/* The sum alone; `rows` holds a double a row of the box. */
+double cf_sweep_sum(const cf_box *b, int threads, const cf_real *f, double *rows);
+
 /* Whether every cell is finite; if not, *where is the index (i, j, k) of the first that is not. */
 int cf_sweep_finite(const cf_box *b, int threads, const cf_real *f, int where[3]);
 

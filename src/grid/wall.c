@@ -57,7 +57,7 @@ void cf_wall_values_sample(cf_wall_values *v, const double t) {
 
 void cf_wall_ghosts(const cf_wall_values *v, const cf_cell phi) {
   const cf_box *box = &v->grid->box;
-  cf_halo halo = {0};
+  cf_halo halo = {.threads = v->grid->threads};
   for (int a = 0; a < box->dim; ++a)
     for (int side = 0; side < 2; ++side)
       halo.rule[a][side] = v->walls.kind[a][side] == CF_WALL_PERIODIC ? CF_HALO_WRAP : CF_HALO_COPY;

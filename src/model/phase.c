@@ -94,7 +94,7 @@ double cf_crystal_natural_dt(const void *model, const double t) {
 /* --- growth ----------------------------------------------------------------------------------------------- */
 
 static double integral(const cf_crystal *m, const cf_cell f) {
-  return cf_sweep_range(&m->grid->box, m->grid->threads, f.at, m->rows).sum * cf_grid_volume(m->grid);
+  return cf_sweep_sum(&m->grid->box, m->grid->threads, f.at, m->rows) * cf_grid_volume(m->grid);
 }
 
 static cf_status grow_explicitly(cf_crystal *m, const double t, const double dt) {

@@ -20,13 +20,13 @@ struct cf_advect {
   const cf_grid *grid;
   cf_advect_scheme scheme;
   cf_face u;
-  bool wrap[3];
-  double rate;           /* K per second */
-  double time, dt;       /* of the step begun; dt of a substep */
-  int substeps;          /* of the step begun */
-  int64_t parity, first; /* of the next step; of the step begun */
-  cf_cell work, second;  /* second: of CF_ADVECT_WENO5 alone */
-  cf_face turned;        /* q half a stretch on, or scratch of a second field; else not committed */
+  bool wrap[3], still[3]; /* still: nothing moves along this axis */
+  double rate;            /* K per second */
+  double time, dt;        /* of the step begun; dt of a substep */
+  int substeps;           /* of the step begun */
+  int64_t parity, first;  /* of the next step; of the step begun */
+  cf_cell work, second;   /* second: of CF_ADVECT_WENO5 alone */
+  cf_face turned;         /* q half a stretch on, or scratch of a second field; else not committed */
   cf_wall_values
       walls[CF_PPM_FIELDS]; /* room for every wall; the walls are those of the fields being moved */
   cf_real *rows;
@@ -104,6 +104,7 @@ cf_status cf_advect_set_velocity(cf_advect *a, const cf_face u, const cf_walls *
   for (int axis = 0; axis < a->grid->box.dim; ++axis)
     a->wrap[axis] = walls->kind[axis][0] == CF_WALL_PERIODIC;
   cf_courant_ghosts(a->grid, a->wrap, u);
+  for (int axis = 0; axis < a->grid->box.dim; ++axis) a->still[axis] = cf_courant_still(a->grid, u, axis);
   return cf_courant_rate(a->grid, u, &a->rate);
 }
 
@@ -140,10 +141,9 @@ cf_status cf_advect_begin(cf_advect *a, const double t, const double dt) {
 /* --- one substep -------------------------------------------------------------------------------------- */
 
 /* Field f of a sweep along s->axis, out of what the sweep before left. */
-static void aim(const cf_advect *a, const moved *m, const int f, cf_ppm_sweep *s) {
+static void aim(const cf_advect *a, const moved *m, const int f, const bool in_place, cf_ppm_sweep *s) {
   cf_ppm_field *field = &s->field[f];
   cf_real *const scratch = f == 0 ? a->work.at : a->turned.at[0];
-  const bool in_place = a->grid->box.dim == 3 && s->axis == 0;
   for (int side = 0; side < 2; ++side) {
     field->ghost[side] = m->ghost[s->axis][side];
     field->inflow[side] = m->inflow[s->axis][side];
@@ -153,11 +153,33 @@ static void aim(const cf_advect *a, const moved *m, const int f, cf_ppm_sweep *s
   field->to = in_place ? (cf_real *)field->from : field->from == m->at ? scratch : m->at;
 }
 
-/* dim sweeps, each from one field into the other, so that the last one ends where the first began. With three
- * of them the one along x, which may, stays in place. Fields differ in their ghosts alone. */
-static void carry(cf_advect *a, const moved *m, const int fields, const int substep) {
+static void take_home(const cf_advect *a, const moved *m, const cf_real *from) {
+  const cf_box *b = &a->grid->box;
+  const ptrdiff_t rows = (ptrdiff_t)m->count[1] * m->count[2];
+#pragma omp parallel for schedule(static) num_threads(cf_sweep_threads(b, a->grid->threads))
+  for (ptrdiff_t r = 0; r < rows; ++r) {
+    const ptrdiff_t p = cf_box_at(b, 0, (int)(r % m->count[1]), (int)(r / m->count[1]));
+    memcpy(m->at + p, from + p, (size_t)m->count[0] * sizeof *m->at);
+  }
+}
+
+/* The axes along which something moves, in the order of this substep. */
+static int take_axes(const cf_advect *a, const int substep, int axes[3]) {
   const int dim = a->grid->box.dim;
   const bool reversed = (a->first + substep) % 2 != 0;
+  int count = 0;
+  for (int i = 0; i < dim; ++i) {
+    const int axis = reversed ? dim - 1 - i : i;
+    if (!a->still[axis]) axes[count++] = axis;
+  }
+  return count;
+}
+
+/* A sweep an axis, each from one field into the other, so that the last of two ends where the first began. Of one or
+ * three the one along x, which may, stays in place. Fields differ in their ghosts alone. */
+static void carry(cf_advect *a, const moved *m, const int fields, const int substep) {
+  int axes[3];
+  const int count = take_axes(a, substep, axes);
   cf_ppm_sweep s = {.grid = a->grid,
                     .component = m->component,
                     .count = {m->count[0], m->count[1], m->count[2]},
@@ -165,14 +187,15 @@ static void carry(cf_advect *a, const moved *m, const int fields, const int subs
                     .u = a->u,
                     .rows = a->rows,
                     .fields = fields};
-  for (s.swept = 0; s.swept < dim; ++s.swept) {
-    s.axis = reversed ? dim - 1 - s.swept : s.swept;
-    s.mass = m->mass && s.swept == dim - 1;
-    for (int f = 0; f < fields; ++f) aim(a, &m[f], f, &s);
+  for (s.swept = 0; s.swept < count; ++s.swept) {
+    s.axis = axes[s.swept];
+    s.mass = m->mass && s.swept == count - 1;
+    for (int f = 0; f < fields; ++f) aim(a, &m[f], f, s.axis == 0 && count % 2 != 0, &s);
     cf_ppm_sweep_run(&s);
     if (s.swept < 2) s.before[s.swept] = s.axis;
   }
-  for (int f = 0; f < fields; ++f) {
+  for (int f = 0; f < fields && count > 0; ++f) {
+    if (s.field[f].to != m[f].at) take_home(a, &m[f], s.field[f].to);
     if (m[f].through == NULL) continue;
     m[f].through->entered += s.field[f].entered * cf_grid_volume(a->grid);
     m[f].through->left += s.field[f].left * cf_grid_volume(a->grid);
@@ -232,12 +255,7 @@ static void trace(cf_advect *a, const moved *m) {
   }
   cf_halo_fill(b, &halo, t.cubic ? 2 : 1, m->component, m->at);
   cf_trace_run(&t);
-  const ptrdiff_t rows = (ptrdiff_t)m->count[1] * m->count[2];
-#pragma omp parallel for schedule(static) num_threads(cf_sweep_threads(b, a->grid->threads))
-  for (ptrdiff_t r = 0; r < rows; ++r) {
-    const ptrdiff_t p = cf_box_at(b, 0, (int)(r % m->count[1]), (int)(r / m->count[1]));
-    memcpy(m->at + p, a->work.at + p, (size_t)m->count[0] * sizeof *m->at);
-  }
+  take_home(a, m, a->work.at);
 }
 
 static void move(cf_advect *a, const moved *m, const int fields, const int substep) {

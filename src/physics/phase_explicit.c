@@ -165,7 +165,7 @@ static void keep_X_1(const cf_phase *p, cf_phase_rows *rows, const ptrdiff_t sta
 /* --- what comes in through walls -------------------------------------------------------------------------- */
 
 static double integral(const cf_phase *p, const cf_cell f) {
-  return cf_sweep_range(&p->grid->box, p->grid->threads, f.at, p->sums).sum * cf_grid_volume(p->grid);
+  return cf_sweep_sum(&p->grid->box, p->grid->threads, f.at, p->sums) * cf_grid_volume(p->grid);
 }
 
 /* Rate at which the integral of T grows through held walls, and by what a flow took of w. */

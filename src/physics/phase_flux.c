@@ -149,7 +149,7 @@ CF_KERNEL bool is_empty(const int n, const cf_real *block) {
 
 /* The row of eta is 0 but for whole blocks from the first to the last in which it is not. */
 CF_CLONES static void fill_span(const int n, const cf_real *row, cf_span *filled) {
-  int from = 0, to = n;
+  int from = 0, to = is_empty(n, row) ? 0 : n; /* most rows are empty, and one loop says so soonest */
   for (int m; m = CF_MIN(BLOCK, to - from), m > 0 && is_empty(m, row + from);) from += m;
   for (int m; m = CF_MIN(BLOCK, to - from), m > 0 && is_empty(m, row + to - m);) to -= m;
   filled->from = from;

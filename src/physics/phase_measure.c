@@ -16,7 +16,7 @@ static double sum_rows(const cf_phase *p) {
 }
 
 double cf_phase_solid(const cf_phase *p, const cf_cell eta) {
-  return cf_sweep_range(&p->grid->box, p->grid->threads, eta.at, p->sums).sum * cf_grid_volume(p->grid);
+  return cf_sweep_sum(&p->grid->box, p->grid->threads, eta.at, p->sums) * cf_grid_volume(p->grid);
 }
 
 CF_CLONES static double heat_in_row(const int n, const double latent, const cf_real *T, const cf_real *eta) {

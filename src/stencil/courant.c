@@ -51,6 +51,17 @@ void cf_courant_ghosts(const cf_grid *g, const bool wrap[3], const cf_face u) {
   for (int c = 0; c < g->box.dim; ++c) fill_component(&g->box, wrap, c, u.at[c]);
 }
 
+bool cf_courant_still(const cf_grid *g, const cf_face u, const int axis) {
+  const cf_box *b = &g->box;
+  for (int k = 0; k < cf_box_extent(b, 2, axis); ++k)
+    for (int j = 0; j < cf_box_extent(b, 1, axis); ++j) {
+      const cf_real *row = u.at[axis] + cf_box_at(b, 0, j, k);
+      for (int i = 0; i < cf_box_extent(b, 0, axis); ++i)
+        if (!(row[i] == 0)) return false;
+    }
+  return true;
+}
+
 /* --- the rate ----------------------------------------------------------------------------------------- */
 
 #define LANES 16

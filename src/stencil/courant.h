@@ -21,6 +21,9 @@
  * normal one goes on linearly: mirrored at a closed wall, free of divergence at an open one. */
 void cf_courant_ghosts(const cf_grid *g, const bool wrap[3], cf_face u);
 
+/* Whether u is 0 on every face across `axis`. */
+bool cf_courant_still(const cf_grid *g, cf_face u, int axis);
+
 /* K/dt in 1/s. CF_NOT_FINITE with the place where a velocity is not finite. */
 cf_status cf_courant_rate(const cf_grid *g, cf_face u, double *rate);
 

@@ -202,6 +202,49 @@ static void two_fields_together_move_as_each_alone(void **state) {
   }
 }
 
+/* A velocity that varies across its own axis only, along the axes whose bit is in `moving`; elsewhere `rest`. */
+static void move_along(scene *s, const int moving, const double rest, cf_through *through) {
+  const cf_box *b = &s->grid.box;
+  for (int a = 0; a < b->dim; ++a)
+    for (int k = 0; k < cf_box_extent(b, 2, a); ++k)
+      for (int j = 0; j < cf_box_extent(b, 1, a); ++j)
+        for (int i = 0; i < cf_box_extent(b, 0, a); ++i) {
+          const int at[3] = {i, j, k};
+          const double v = noise(at[(a + 1) % b->dim], 20 + a) - 0.5;
+          s->u.at[a][cf_box_at(b, i, j, k)] = (cf_real)((moving & (1 << a)) != 0 ? v : rest);
+        }
+  OK(cf_advect_set_velocity(s->advect, s->u, &s->walls));
+  set_noise(s, 6, 0);
+  for (int step = 0; step < 3; ++step) move_cells(s, 0, 0.7 * s->grid.h, through);
+}
+
+/* 1e-30 m/s carries nothing anywhere, but is not 0. */
+static void still(const int dim, const int *cells, const int moving, const cf_wall kind) {
+  scene s[2];
+  cf_through through[2] = {{0, 0}, {0, 0}};
+  for (int way = 0; way < 2; ++way) {
+    scene_open(&s[way], dim, cells, walls_all(kind));
+    move_along(&s[way], moving, way == 0 ? 0 : 1e-30, &through[way]);
+  }
+  const cf_box *b = &s[0].grid.box;
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
+    for (int i = 0; i < b->n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(b, r) + i;
+      assert_true(fabs((double)(s[0].phi.at[p] - s[1].phi.at[p])) < 8 * EPS);
+    }
+  assert_true(fabs(through[0].left - through[1].left) <= 8 * EPS * through[1].left + 1e-20);
+  for (int way = 0; way < 2; ++way) scene_close(&s[way]);
+}
+
+static void advect_leaves_out_axes_along_which_nothing_moves(void **state) {
+  (void)state;
+  for (int moving = 0; moving < 8; ++moving) {
+    still(3, solid, moving, CF_WALL_OPEN);
+    still(3, solid, moving, CF_WALL_PERIODIC);
+    if (moving < 4) still(2, flat, moving, CF_WALL_OPEN);
+  }
+}
+
 static void wave(const void *context, const int n, const double *x, const double *y, const double *z,
                  const double t, double *out) {
   (void)context, (void)x, (void)z;
@@ -313,6 +356,7 @@ int main(void) {
       cmocka_unit_test(advect_is_linear_in_a_f_plus_b),
       cmocka_unit_test(advect_balances_what_passes_through_walls),
       cmocka_unit_test(two_fields_together_move_as_each_alone),
+      cmocka_unit_test(advect_leaves_out_axes_along_which_nothing_moves),
       cmocka_unit_test(advect_lets_in_what_the_wall_says_at_the_time),
       cmocka_unit_test(linear_tracing_lets_in_what_the_wall_says),
       cmocka_unit_test(advect_refuses_what_it_cannot_do),
