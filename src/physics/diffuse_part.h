@@ -6,6 +6,7 @@
  *   diffuse.c            creation, and which scheme takes a step
  *   diffuse_sources.c    sources, held cells, walls, the ledger
  *   diffuse_stage.c      the implicit stage and the schemes made of it
+ *   diffuse_operator.c   the equation of a stage, and its solve
  *   diffuse_leapfrog.c   the explicit scheme
  *   diffuse_wave.c       the explicit scheme with WENO5
  *   diffuse_region.c     what walls and held cells within the box make of all that
@@ -166,6 +167,14 @@ double cf_diffuse_sum_inside(const cf_diffuse *d, cf_cell phi);
 
 /* What held cells, which were 0 before, have taken up is counted, and they get their value. */
 void cf_diffuse_take_outside(const cf_diffuse *d, cf_cell phi, cf_ledger *ledger);
+
+/* --- the equation of a stage ------------------------------------------------------------------------------ */
+
+/* Makes it that of `law`, and of what is held now. */
+cf_status cf_diffuse_set_operator(cf_diffuse *d, const cf_flux_law *law);
+
+/* x from b, from the guess in x; what is held counts. Changes b where something is held. */
+cf_status cf_diffuse_solve(cf_diffuse *d, cf_solve_report *report);
 
 /* --- schemes ---------------------------------------------------------------------------------------------- */
 

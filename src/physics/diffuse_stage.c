@@ -10,17 +10,12 @@
  * w = 1 gives the stage itself and w = 1 + sqrt(2) the start of SDIRK2's second stage, so no copy of the old
  * state is ever kept. The fluxes through walls are summed for the ledger with the same w. phi~ gets a layer of
  * ghosts, so faces on walls are faces like any other. In the scalar form s stands for div q, and cells and faces
- * are one sweep.
+ * are one sweep. The solve and its operator are in diffuse_operator.c.
  */
 #include <math.h>
 #include <string.h>
 
 #include "physics/diffuse_part.h"
-
-/* A held cell's equation is phi = value with this weight beside the rest; from this fraction on the value is
- * known. */
-#define HOLD_MAX 1e6
-#define HOLD_ALL (1 - 1 / HOLD_MAX)
 
 /* m: what is left of a flux after `delta`. 0 for tau = 0, 1 for tau = infinity. */
 static double flux_memory(const double delta, const double tau) {
@@ -152,96 +147,6 @@ static void high_walls(const cf_diffuse *d, const stage *s) {
   }
 }
 
-/* --- the operator of a stage ------------------------------------------------------------------------------ */
-
-CF_CLONES static void scale_row(const int n, const cf_real factor, const cf_real *from, const cf_real all,
-                                cf_real *to) {
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) to[i] = factor * (from != NULL ? from[i] : all);
-}
-
-/* beta = per k on all faces. */
-static void scale_faces(const cf_diffuse *d, const cf_real per) {
-  const cf_box *box = &d->grid->box;
-  for (int a = 0; a < box->dim; ++a) {
-    const int n1 = cf_box_extent(box, 1, a), n2 = cf_box_extent(box, 2, a);
-#pragma omp parallel for schedule(static) num_threads(cf_sweep_threads(box, d->grid->threads))
-    for (int r = 0; r < n1 * n2; ++r) {
-      const ptrdiff_t p = cf_box_at(box, 0, r % n1, r / n1);
-      scale_row(cf_box_extent(box, 0, a), per, d->k_varies ? d->k.at[a] + p : NULL, (cf_real)d->p.k.value,
-                d->beta.at[a] + p);
-    }
-  }
-}
-
-static void radiation_beta(const cf_diffuse *d, const cf_wall_side *w, const ptrdiff_t p, const ptrdiff_t f,
-                           const ptrdiff_t place, void *law) {
-  (void)place;
-  cf_real *beta = &d->beta.at[w->axis][f];
-  *beta = (cf_real)((double)*beta * cf_diffuse_radiation(d, law, w->axis, p, f).share);
-}
-
-/* alpha = C (1 + f/(1 - f)) where a fraction f of the cell is held. */
-static void alpha_where_held(cf_diffuse *d) {
-  const cf_box *box = &d->grid->box;
-  CF_PARALLEL_ROWS (box, d->grid->threads, r)
-    for (int i = 0; i < box->n[0]; ++i) {
-      const ptrdiff_t p = cf_box_row(box, r) + i;
-      const double f = (double)d->fraction.at[p], hold = f < 1 ? CF_MIN(f / (1 - f), HOLD_MAX) : HOLD_MAX;
-      d->alpha.at[p] = (cf_real)((d->c_varies ? (double)d->capacity.at[p] : 1) * (1 + hold));
-    }
-}
-
-static cf_status set_operator(cf_diffuse *d, const cf_flux_law *law) {
-  if (d->source.hold != NULL)
-    alpha_where_held(d);
-  else if (law->delta == d->delta && law->per == d->per)
-    return CF_OK; /* the same matrix as last time */
-  d->delta = -1;  /* until all is well: after a failure the operator must be set again */
-  const double beta = law->delta * law->per;
-  cf_coefficients c = {
-      .alpha = 1, .beta = d->beta.at[0] != NULL ? 0 : beta * d->p.k.value, .region = d->p.region};
-  if (d->beta.at[0] != NULL) {
-    scale_faces(d, (cf_real)beta);
-    cf_diffuse_halve_held(d, d->beta);
-    if (d->has_radiation) {
-      cf_flux_law own = *law;
-      cf_diffuse_visit_radiating(d, radiation_beta, &own);
-    }
-    c.beta_at = &d->beta;
-  }
-  if (d->source.hold != NULL)
-    c.alpha_at = &d->alpha;
-  else if (d->c_varies)
-    c.alpha_at = &d->capacity;
-  CF_TRY(cf_helmholtz_set(d->A, &c));
-  d->delta = law->delta;
-  d->per = law->per;
-  return CF_OK;
-}
-
-/* b += C f/(1 - f) value, to match alpha. */
-static void right_side_where_held(const cf_diffuse *d) {
-  const cf_box *box = &d->grid->box;
-  CF_PARALLEL_ROWS (box, d->grid->threads, r)
-    for (int i = 0; i < box->n[0]; ++i) {
-      const ptrdiff_t p = cf_box_row(box, r) + i;
-      const double c = d->c_varies ? (double)d->capacity.at[p] : 1;
-      d->b.at[p] += (cf_real)(((double)d->alpha.at[p] - c) * (double)d->value.at[p]);
-    }
-}
-
-static double norm(const cf_diffuse *d, const cf_cell f) {
-  const cf_box *box = &d->grid->box;
-  CF_PARALLEL_ROWS (box, d->grid->threads, r) {
-    double lane[CF_SUM_LANES] = {0};
-    const cf_real *row = f.at + cf_box_row(box, r);
-    for (int i = 0; i < box->n[0]; ++i) lane[i % CF_SUM_LANES] += (double)row[i] * (double)row[i];
-    d->rows[r] = cf_sum_lanes(lane);
-  }
-  return sqrt(cf_sum_ordered(d->rows, cf_box_rows(box)));
-}
-
 /* Of m q_w on a radiating wall only the share theta leaves the cell; the rest goes into phi_w. */
 static void radiation_right_side(const cf_diffuse *d, const cf_wall_side *w, const ptrdiff_t p,
                                  const ptrdiff_t f, const ptrdiff_t place, void *context) {
@@ -337,37 +242,6 @@ static stage stage_begin(const cf_diffuse *d, const stage_plan *plan, const cf_d
   return s;
 }
 
-/* Where cells are held, for the change from a guess that has the held values: against their weights the other
- * cells' equations would not count in the norms of the solver. The residual is meant, and told, in terms of the right
- * side without those weights. */
-static cf_status solve_held(cf_diffuse *d, const double plain, cf_solve_report *one) {
-  const cf_box *box = &d->grid->box;
-  cf_solve_options o = d->p.solver;
-  CF_PARALLEL_ROWS (box, d->grid->threads, r)
-    for (int i = 0; i < box->n[0]; ++i) {
-      const ptrdiff_t p = cf_box_row(box, r) + i;
-      if ((double)d->fraction.at[p] >= HOLD_ALL) d->x.at[p] = d->value.at[p];
-    }
-  cf_helmholtz_apply(d->A, d->x, d->change);
-  CF_PARALLEL_ROWS (box, d->grid->threads, r)
-    for (int i = 0; i < box->n[0]; ++i) {
-      const ptrdiff_t p = cf_box_row(box, r) + i;
-      const bool known = (double)d->fraction.at[p] >= HOLD_ALL;
-      d->b.at[p] = known ? 0 : d->b.at[p] - d->change.at[p];
-      d->change.at[p] = 0;
-    }
-  const double size = norm(d, d->b), scale = size > 0 && plain > 0 ? plain / size : 1;
-  o.tolerance = CF_MIN(0.5, CF_MAX(o.tolerance * scale, 64 * CF_REAL_EPSILON));
-  CF_TRY(cf_helmholtz_solve(d->A, d->b, &o, d->change, one));
-  one->residual /= scale;
-  CF_PARALLEL_ROWS (box, d->grid->threads, r)
-    for (int i = 0; i < box->n[0]; ++i) {
-      const ptrdiff_t p = cf_box_row(box, r) + i;
-      d->x.at[p] += d->change.at[p];
-    }
-  return CF_OK;
-}
-
 static cf_status solve_stage(cf_diffuse *d, stage *s, const cf_diffused *y, cf_solve_report *report) {
   const cf_box *box = &d->grid->box;
   cf_diffuse_set_outside(d, y->phi);
@@ -376,19 +250,13 @@ static cf_status solve_stage(cf_diffuse *d, stage *s, const cf_diffused *y, cf_s
     right_side_row_by_form(box->dim, s->s != NULL, box->n[0], s, start);
     memcpy(d->x.at + start, y->phi.at + start, (size_t)box->n[0] * sizeof *d->x.at);
   }
-  CF_TRY(set_operator(d, &s->law));
+  CF_TRY(cf_diffuse_set_operator(d, &s->law));
   cf_helmholtz_add_walls(d->A, &d->walls, d->b);
   cf_diffuse_clear_outside(d, d->b);
   if (d->p.region != NULL) cf_helmholtz_add_held(d->A, d->b);
   if (d->has_radiation) cf_diffuse_visit_radiating(d, radiation_right_side, s);
   cf_solve_report one;
-  if (d->source.hold != NULL) {
-    const double plain = norm(d, d->b);
-    right_side_where_held(d);
-    CF_TRY(solve_held(d, plain, &one));
-  } else {
-    CF_TRY(cf_helmholtz_solve(d->A, d->b, &d->p.solver, d->x, &one));
-  }
+  CF_TRY(cf_diffuse_solve(d, &one));
   report->iterations += one.iterations;
   report->levels = one.levels;
   report->residual = CF_MAX(report->residual, one.residual);
