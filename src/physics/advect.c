@@ -1,47 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include "physics/advect.h"
-
 #include <math.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "grid/halo.h"
-#include "grid/sweep.h"
-#include "grid/wall.h"
+#include "physics/advect_part.h"
 #include "stencil/courant.h"
-#include "stencil/ppm.h"
 #include "stencil/stretch.h"
-#include "stencil/trace.h"
 #include "stencil/weno5.h"
 
 #define SAFE_K 0.9 /* at K = 1 all of a cell may be gone after the first sweeps, and rho = 0 */
-
-struct cf_advect {
-  const cf_grid *grid;
-  cf_advect_scheme scheme;
-  cf_face u;
-  bool wrap[3], still[3]; /* still: nothing moves along this axis */
-  double rate;            /* K per second */
-  double time, dt;        /* of the step begun; dt of a substep */
-  int substeps;           /* of the step begun */
-  int64_t parity, first;  /* of the next step; of the step begun */
-  cf_cell work, second;   /* second: of CF_ADVECT_WENO5 alone */
-  cf_face turned;         /* q half a stretch on, or scratch of a second field; else not committed */
-  cf_wall_values
-      walls[CF_PPM_FIELDS]; /* room for every wall; the walls are those of the fields being moved */
-  cf_real *rows;
-  double *lines[CF_PPM_FIELDS];
-};
-
-/* What is being moved. */
-typedef struct moved {
-  int component, count[3];
-  cf_ghost ghost[3][2];
-  const double *inflow[3][2]; /* CF_GHOST_INFLOW: what comes in, a value for each volume at the wall */
-  bool mass;                  /* flux form: the sum is kept */
-  cf_real *at;
-  cf_through *through; /* NULL: nobody asks */
-} moved;
 
 /* --- making one --------------------------------------------------------------------------------------- */
 
@@ -110,15 +77,11 @@ cf_status cf_advect_set_velocity(cf_advect *a, const cf_face u, const cf_walls *
 
 double cf_advect_rate(const cf_advect *a) { return a->rate; }
 
-static bool is_traced(const cf_advect *a) {
-  return a->scheme == CF_ADVECT_LINEAR || a->scheme == CF_ADVECT_CUBIC;
-}
-
 double cf_advect_substeps(const cf_advect *a, const double dt) {
   /* K is the most that one axis carries off; all axes at once can do so much each. */
   const int axes = a->scheme == CF_ADVECT_WENO5 ? a->grid->box.dim : 1;
   const double wanted = ceil(axes * a->rate * dt / SAFE_K);
-  return is_traced(a) || wanted < 1 ? 1 : wanted;
+  return cf_advect_is_traced(a) || wanted < 1 ? 1 : wanted;
 }
 
 int64_t *cf_advect_parity(cf_advect *a) { return &a->parity; }
@@ -136,138 +99,6 @@ cf_status cf_advect_begin(cf_advect *a, const double t, const double dt) {
   a->first = a->parity;
   a->parity += a->substeps;
   return CF_OK;
-}
-
-/* --- one substep -------------------------------------------------------------------------------------- */
-
-/* Field f of a sweep along s->axis, out of what the sweep before left. */
-static void aim(const cf_advect *a, const moved *m, const int f, const bool in_place, cf_ppm_sweep *s) {
-  cf_ppm_field *field = &s->field[f];
-  cf_real *const scratch = f == 0 ? a->work.at : a->turned.at[0];
-  for (int side = 0; side < 2; ++side) {
-    field->ghost[side] = m->ghost[s->axis][side];
-    field->inflow[side] = m->inflow[s->axis][side];
-  }
-  field->lines = m->through != NULL && !a->wrap[s->axis] ? a->lines[f] : NULL;
-  field->from = s->swept == 0 ? m->at : field->to;
-  field->to = in_place ? (cf_real *)field->from : field->from == m->at ? scratch : m->at;
-}
-
-static void take_home(const cf_advect *a, const moved *m, const cf_real *from) {
-  const cf_box *b = &a->grid->box;
-  const ptrdiff_t rows = (ptrdiff_t)m->count[1] * m->count[2];
-#pragma omp parallel for schedule(static) num_threads(cf_sweep_threads(b, a->grid->threads))
-  for (ptrdiff_t r = 0; r < rows; ++r) {
-    const ptrdiff_t p = cf_box_at(b, 0, (int)(r % m->count[1]), (int)(r / m->count[1]));
-    memcpy(m->at + p, from + p, (size_t)m->count[0] * sizeof *m->at);
-  }
-}
-
-/* The axes along which something moves, in the order of this substep. */
-static int take_axes(const cf_advect *a, const int substep, int axes[3]) {
-  const int dim = a->grid->box.dim;
-  const bool reversed = (a->first + substep) % 2 != 0;
-  int count = 0;
-  for (int i = 0; i < dim; ++i) {
-    const int axis = reversed ? dim - 1 - i : i;
-    if (!a->still[axis]) axes[count++] = axis;
-  }
-  return count;
-}
-
-/* A sweep an axis, each from one field into the other, so that the last of two ends where the first began. Of one or
- * three the one along x, which may, stays in place. Fields differ in their ghosts alone. */
-static void carry(cf_advect *a, const moved *m, const int fields, const int substep) {
-  int axes[3];
-  const int count = take_axes(a, substep, axes);
-  cf_ppm_sweep s = {.grid = a->grid,
-                    .component = m->component,
-                    .count = {m->count[0], m->count[1], m->count[2]},
-                    .half = (cf_real)(a->dt / (2 * a->grid->h)),
-                    .u = a->u,
-                    .rows = a->rows,
-                    .fields = fields};
-  for (s.swept = 0; s.swept < count; ++s.swept) {
-    s.axis = axes[s.swept];
-    s.mass = m->mass && s.swept == count - 1;
-    for (int f = 0; f < fields; ++f) aim(a, &m[f], f, s.axis == 0 && count % 2 != 0, &s);
-    cf_ppm_sweep_run(&s);
-    if (s.swept < 2) s.before[s.swept] = s.axis;
-  }
-  for (int f = 0; f < fields && count > 0; ++f) {
-    if (s.field[f].to != m[f].at) take_home(a, &m[f], s.field[f].to);
-    if (m[f].through == NULL) continue;
-    m[f].through->entered += s.field[f].entered * cf_grid_volume(a->grid);
-    m[f].through->left += s.field[f].left * cf_grid_volume(a->grid);
-  }
-}
-
-/* Three stages of Runge-Kutta; what passes the walls in them counts 1/6, 1/6 and 2/3. */
-static void reconstruct(cf_advect *a, const moved *m) {
-  static const double share[3] = {0, 0.75, 1.0 / 3}, weight[3] = {1.0 / 6, 1.0 / 6, 2.0 / 3};
-  cf_real *const into[3] = {a->work.at, a->second.at, m->at};
-  cf_weno5_stage s = {.grid = a->grid,
-                      .component = m->component,
-                      .count = {m->count[0], m->count[1], m->count[2]},
-                      .mass = m->mass,
-                      .half = (cf_real)(a->dt / (2 * a->grid->h)),
-                      .u = a->u,
-                      .old = m->at,
-                      .from = m->at,
-                      .rows = a->rows,
-                      .lines = m->through != NULL ? a->lines[0] : NULL};
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side = 0; side < 2; ++side) {
-      s.ghost[axis][side] = m->ghost[axis][side];
-      s.inflow[axis][side] = m->inflow[axis][side];
-    }
-  double passed[2] = {0, 0};
-  for (int stage = 0; stage < 3; ++stage) {
-    s.share = (cf_real)share[stage];
-    s.to = into[stage];
-    cf_weno5_stage_run(&s, weight[stage], passed);
-    s.from = s.to;
-  }
-  if (m->through == NULL) return;
-  m->through->entered += passed[0] * cf_grid_volume(a->grid);
-  m->through->left += passed[1] * cf_grid_volume(a->grid);
-}
-
-/* The paper's step: back along the path, and linear; or cubic. */
-static void trace(cf_advect *a, const moved *m) {
-  const cf_box *b = &a->grid->box;
-  cf_halo halo;
-  cf_trace t = {.grid = a->grid,
-                .component = m->component,
-                .count = {m->count[0], m->count[1], m->count[2]},
-                .dt = a->dt,
-                .u = a->u,
-                .cubic = a->scheme == CF_ADVECT_CUBIC,
-                .from = m->at,
-                .to = a->work.at};
-  for (int axis = 0; axis < b->dim; ++axis) {
-    t.wrap[axis] = a->wrap[axis];
-    for (int side = 0; side < 2; ++side) {
-      if (m->ghost[axis][side] == CF_GHOST_INFLOW && m->component == CF_CENTRES)
-        t.inflow[axis][side] = m->inflow[axis][side];
-      halo.rule[axis][side] = t.wrap[axis] ? CF_HALO_WRAP : CF_HALO_COPY;
-    }
-  }
-  cf_halo_fill(b, &halo, t.cubic ? 2 : 1, m->component, m->at);
-  cf_trace_run(&t);
-  take_home(a, m, a->work.at);
-}
-
-static void move(cf_advect *a, const moved *m, const int fields, const int substep) {
-  if (!is_traced(a) && a->scheme != CF_ADVECT_WENO5) {
-    carry(a, m, fields, substep);
-    return;
-  }
-  for (int f = 0; f < fields; ++f)
-    if (is_traced(a))
-      trace(a, &m[f]);
-    else
-      reconstruct(a, &m[f]);
 }
 
 /* --- cells -------------------------------------------------------------------------------------------- */
@@ -302,13 +133,13 @@ static cf_status check_walls(const cf_advect *a, const cf_walls *walls) {
   return CF_OK;
 }
 
-static moved moved_of(const cf_advect *a, const cf_carried *f, const cf_wall_values *v) {
+static cf_moved moved_of(const cf_advect *a, const cf_carried *f, const cf_wall_values *v) {
   const int *n = a->grid->box.n;
-  moved m = {.component = CF_CENTRES,
-             .count = {n[0], n[1], n[2]},
-             .mass = true,
-             .at = f->phi.at,
-             .through = f->through};
+  cf_moved m = {.component = CF_CENTRES,
+                .count = {n[0], n[1], n[2]},
+                .mass = true,
+                .at = f->phi.at,
+                .through = f->through};
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
       m.ghost[axis][side] = ghost_of_cells(f->walls->kind[axis][side]);
@@ -318,7 +149,7 @@ static moved moved_of(const cf_advect *a, const cf_carried *f, const cf_wall_val
 }
 
 cf_status cf_advect_cells(cf_advect *a, const cf_carried *f, const int count) {
-  moved m[CF_PPM_FIELDS];
+  cf_moved m[CF_PPM_FIELDS];
   for (int i = 0; i < count; ++i) {
     CF_TRY(check_walls(a, f[i].walls));
     take_walls(&a->grid->box, f[i].walls, &a->walls[i]);
@@ -326,7 +157,7 @@ cf_status cf_advect_cells(cf_advect *a, const cf_carried *f, const int count) {
   }
   for (int substep = 0; substep < a->substeps; ++substep) {
     for (int i = 0; i < count; ++i) cf_wall_values_sample(&a->walls[i], a->time + (substep + 0.5) * a->dt);
-    move(a, m, count, substep);
+    cf_advect_move(a, m, count, substep);
   }
   return CF_OK;
 }
@@ -358,9 +189,9 @@ static cf_ghost ghost_of_faces(const cf_wall kind, const bool own_axis) {
 }
 
 /* Component c of a flux. Where its own axis wraps, the last layer of faces is the image of the first. */
-static moved component_of(const cf_advect *a, const cf_walls *walls, const int c, const cf_face q) {
+static cf_moved component_of(const cf_advect *a, const cf_walls *walls, const int c, const cf_face q) {
   const cf_box *b = &a->grid->box;
-  moved m = {.component = c, .at = q.at[c]};
+  cf_moved m = {.component = c, .at = q.at[c]};
   for (int axis = 0; axis < 3; ++axis) {
     m.count[axis] = b->n[axis] + (axis == c && !a->wrap[axis] ? 1 : 0);
     for (int side = 0; side < 2; ++side)
@@ -375,8 +206,8 @@ static void stretch(cf_advect *a, const cf_walls *walls, const double dt, const 
   cf_stretch(a->grid, walls, a->u, dt, a->turned, q, q);
 }
 
-static void carry_component(cf_advect *a, const moved *m, const int substep) {
-  move(a, m, 1, substep);
+static void carry_component(cf_advect *a, const cf_moved *m, const int substep) {
+  cf_advect_move(a, m, 1, substep);
   if (!a->wrap[m->component]) return;
   cf_halo image = {0};
   image.rule[m->component][0] = image.rule[m->component][1] = CF_HALO_WRAP;
@@ -390,7 +221,7 @@ cf_status cf_advect_face(cf_advect *a, const cf_walls *walls, const cf_flux_rate
   for (int substep = 0; substep < a->substeps; ++substep) {
     if (stretched) stretch(a, walls, substep == 0 ? a->dt / 2 : a->dt, q);
     for (int c = 0; c < a->grid->box.dim; ++c) {
-      moved m = component_of(a, walls, c, q);
+      cf_moved m = component_of(a, walls, c, q);
       m.mass = rate != CF_RATE_MATERIAL;
       carry_component(a, &m, substep);
     }
@@ -412,7 +243,7 @@ static cf_ghost ghost_of_velocity(const cf_flow_walls *w, const int axis, const 
 void cf_advect_velocity(cf_advect *a, const cf_flow_walls *walls, const cf_face u) {
   for (int substep = 0; substep < a->substeps; ++substep)
     for (int c = 0; c < a->grid->box.dim; ++c) {
-      moved m = {.component = c, .mass = true, .at = u.at[c]};
+      cf_moved m = {.component = c, .mass = true, .at = u.at[c]};
       for (int axis = 0; axis < 3; ++axis) {
         m.count[axis] = cf_flow_count(walls, axis, c);
         for (int side = 0; side < 2; ++side) {
