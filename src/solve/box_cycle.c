@@ -196,6 +196,10 @@ static void push_second_part(const cf_box_solver *f, cf_pass *p) {
     push_end(p, 0, 0);
     return;
   }
+  if (f->varied != NULL) { /* near walls the correction is not as good as elsewhere */
+    push(p, CF_PASS_RED_EDGES, 1);
+    push(p, CF_PASS_BLACK_EDGES, 1);
+  }
   push(p, CF_PASS_RED, f->omega[4]);
   push(p, CF_PASS_BLACK, f->omega[5]);
   push(p, CF_PASS_RED, f->omega[6]);

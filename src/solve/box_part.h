@@ -10,6 +10,7 @@
 #include "solve/direct.h"
 #include "solve/multigrid.h"
 #include "solve/segments.h"
+#include "solve/setting.h"
 #include "solve/varied_part.h"
 #include "solve/wave.h"
 
@@ -18,8 +19,6 @@
 #define CF_BOX_SWEEPS_ENOUGH 10
 /* Over-relaxation of the finest level over that of the others, where cycles are not thorough. */
 #define CF_BOX_FINEST_OVER 0.85
-/* Half sweeps of a thorough cycle on the finest level, as many before the coarse correction as after it. */
-#define CF_BOX_HALF_SWEEPS 8
 
 struct cf_box_solver {
   /* In a region: the finest level alone, on segments, above the coarse levels of this one. NULL: the whole box. */
@@ -35,8 +34,7 @@ struct cf_box_solver {
   ptrdiff_t sums;
   double alpha, beta, scale; /* scale: the diagonal in the middle of the finest level */
   double jacobi;             /* spectral radius of Jacobi's iteration on the coarsest level */
-  bool
-      thorough; /* a box: eight half sweeps a cycle on its finest level, two corrections from each level below */
+  bool thorough; /* eight half sweeps a cycle on the finest level, two corrections from each level below */
   double omega[CF_BOX_HALF_SWEEPS]; /* of those half sweeps */
   bool singular, lost; /* no alpha at all (in a region: everywhere, and nothing known); next to none */
   bool free_mean;      /* no wall is held, and alpha is small or 0 */

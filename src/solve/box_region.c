@@ -105,9 +105,10 @@ cf_status cf_box_solver_set_around(cf_box_solver *f, const cf_helmholtz *A, cons
   *taken = is_suitable(f, A);
   if (!*taken) return CF_OK;
   f->jacobi = stiffness / (1 + stiffness);
-  const double share = stiffness < INFINITY ? f->jacobi : 1;
-  const double over = f->depth == 1 ? 1 : 1 + CF_BOX_FINEST_OVER * 0.2 * share * share;
-  cf_split_set(s, alpha, beta, f->scale, (double[4]){over, over, over, over});
+  f->thorough = f->depth > 1;
+  const cf_setting on = cf_setting_for(A->grid.box.dim, stiffness);
+  for (int v = 0; v < CF_BOX_HALF_SWEEPS; ++v) f->omega[v] = 1 + on.over[v];
+  cf_split_set(s, alpha, beta, f->scale, (double[4]){1, 1, 1, 1});
   if (f->segments.rows > 0) cf_segments_clear(&f->segments, s);
   CF_TRY(cf_segments_find(&f->segments, s, f->varied->region));
   f->sums = f->segments.rows * cf_wave_pieces(s);

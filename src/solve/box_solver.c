@@ -9,6 +9,7 @@
 #include "grid/sweep.h"
 #include "solve/box_part.h"
 #include "solve/pcg.h"
+#include "solve/setting.h"
 
 /* The polynomials' bound holds for the error; a pass aims so much below what is asked of the residual, since a second
  * pass costs more than a half sweep. */
@@ -23,9 +24,6 @@
 /* In a region, where differences are not exact at edges, so much of the tolerance is left to what the recursion does not
  * see. */
 #define RECURSION_SLACK 0.01
-/* Near walls on the levels below: enough for the stationary iteration. */
-#define BAND_SWEEPS 1
-#define BAND_OMEGA  1.15f
 /* A cycle that leaves more than this of the residual, so many times in a row: not a case for this path. */
 #define SLOW       0.5
 #define SLOW_TIMES 3
@@ -103,46 +101,6 @@ static bool is_suitable(const cf_box_solver *f, const cf_level *finest, const cf
          cf_level_stiffness(coarsest) <= (f->depth == 1 ? CF_BOX_SWEEPS_ENOUGH : CF_STIFF_ENOUGH);
 }
 
-/* How a cycle on the finest level of a box is set, by alpha's share in the diagonal (0: Poisson's equation): omega of its half
- * sweeps less 1, and by what share alpha and beta of the coarse levels differ from their own. Found by minimizing what three
- * cycles leave of noise, and of smooth waves, in a box without walls, where Fourier's analysis (couplings of the eight waves
- * that coincide on the coarse level; four in 2D) tells it in no time. Coarse levels that differ a little make up for what
- * averaging does to alpha and for what over-relaxation does to smooth waves; the rates are a fifth of those without.
- * The fourth half sweep is not over-relaxed: RESTRICT_RED asks for that. */
-typedef struct setting {
-  double share, over[CF_BOX_HALF_SWEEPS], alpha, beta;
-} setting;
-
-enum { SETTINGS_2D = 4, SETTINGS_3D = 6 };
-static const setting in_2d[SETTINGS_2D] = {
-    {0, {1.968, 0.114, -0.044, 0, 0.663, -0.005, 0.095, -0.326}, 0, -0.012},
-    {0.0154, {2.146, 0.065, -0.032, 0, 0.552, -0.011, 0.106, -0.301}, 0.018, -0.020},
-    {0.0476, {1.464, 0.240, -0.024, 0, 0.356, 0.016, 0.168, -0.143}, 0.052, -0.057},
-    {0.0943, {1.515, 0.269, 0.005, 0, 0.233, 0.026, 0.182, -0.118}, 0.090, -0.125},
-};
-static const setting in_3d[SETTINGS_3D] = {
-    {0, {0.729, 0.307, 0.047, 0, 1.330, -0.095, 0.167, -0.118}, 0, 0},
-    {0.0103, {0.691, 0.223, 0.055, 0, 1.101, -0.114, 0.095, -0.157}, 0.017, -0.019},
-    {0.0204, {0.766, 0.187, 0.029, 0, 0.823, -0.037, 0.154, -0.136}, 0.034, -0.037},
-    {0.0400, {0.808, 0.219, 0.032, 0, 0.591, -0.012, 0.193, -0.176}, 0.054, -0.077},
-    {0.0676, {0.821, 0.164, 0.034, 0, 0.451, -0.014, 0.193, -0.114}, 0.080, -0.140},
-    {0.0943, {0.637, 0.227, 0.081, 0, 0.245, -0.005, 0.180, -0.088}, 0.090, -0.266},
-};
-
-/* Linear between the rows. */
-static setting setting_for(const cf_level *l) {
-  const setting *row = l->box.dim == 3 ? in_3d : in_2d;
-  const setting *last = row + (l->box.dim == 3 ? SETTINGS_3D : SETTINGS_2D) - 2;
-  setting s = {.share = 1 / (1 + cf_level_stiffness(l))};
-  while (row < last && s.share > row[1].share) ++row;
-  const double way = CF_MIN((s.share - row[0].share) / (row[1].share - row[0].share), 1);
-  s.alpha = row[0].alpha + way * (row[1].alpha - row[0].alpha);
-  s.beta = row[0].beta + way * (row[1].beta - row[0].beta);
-  for (int v = 0; v < CF_BOX_HALF_SWEEPS; ++v)
-    s.over[v] = row[0].over[v] + way * (row[1].over[v] - row[0].over[v]);
-  return s;
-}
-
 /* omega of the four half sweeps of other cycles: 1 + (share of diffusion in the diagonal)^2 / 5, on the finest level so much of
  * what is above 1, and none in the first one after the coarse correction, which starts anew (stages.h). */
 static void choose_omega(const cf_level *l, const bool finest, const bool half_sweeps_only, double omega[4]) {
@@ -170,7 +128,8 @@ bool cf_box_solver_set(cf_box_solver *f, const cf_helmholtz *A) {
   f->free_mean = !A->has_held_wall && cf_level_stiffness(finest) > MEAN_APART;
   f->lost = f->singular || (f->free_mean && cf_level_stiffness(finest) > MEAN_LOST);
   f->thorough = f->depth > 1 && !is_thin(&A->grid.box);
-  const setting on = f->thorough ? setting_for(finest) : (setting){0};
+  const cf_setting on =
+      f->thorough ? cf_setting_for(A->grid.box.dim, cf_level_stiffness(finest)) : (cf_setting){0};
   for (int v = 0; v < CF_BOX_HALF_SWEEPS; ++v) f->omega[v] = 1 + on.over[v];
   for (int l = 0; l < f->depth; ++l) {
     const bool half_sweeps_only = l == f->depth - 1 && !cf_level_is_solved_directly(coarsest);
@@ -399,7 +358,8 @@ cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, 
   const cf_coupled *l = &f->varied->level[0];
   report->pockets = pockets->count;
   f->varied->careful = false;
-  f->varied->band_sweeps = (cf_band_sweeps){BAND_SWEEPS, BAND_OMEGA};
+  f->varied->thorough = true;
+  f->varied->band_sweeps = (cf_band_sweeps){f->segments.any_held, 1};
   if (f->singular)
     return run(f, A, b, o, x, report, finished); /* which looks after a single mean by itself */
   cf_pockets_remove_means(pockets, l, b);

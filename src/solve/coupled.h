@@ -111,6 +111,9 @@ void cf_coupled_smooth_first(const cf_coupled *l, float omega, cf_band_sweeps ba
 /* Sweeps over the band, then `sweeps` full ones. */
 void cf_coupled_smooth(const cf_coupled *l, float omega, cf_band_sweeps band, int sweeps);
 
+/* A full sweep, then rest = r - A e. */
+void cf_coupled_smooth_again(const cf_coupled *l, float omega);
+
 /* What smooth_first does in the opposite order: its transpose, for a cycle that must be symmetric. */
 void cf_coupled_smooth_back(const cf_coupled *l, float omega, cf_band_sweeps band);
 

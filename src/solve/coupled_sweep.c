@@ -268,6 +268,14 @@ void cf_coupled_smooth(const cf_coupled *l, const float omega, const cf_band_swe
   run(&s, false);
 }
 
+void cf_coupled_smooth_again(const cf_coupled *l, const float omega) {
+  list s = {.l = l};
+  push(&s, HALF, 0, omega);
+  push(&s, HALF, 1, omega);
+  push(&s, REST, 0, 1);
+  run(&s, false);
+}
+
 void cf_coupled_smooth_back(const cf_coupled *l, const float omega, const cf_band_sweeps band) {
   list s = {.l = l};
   push_band(&s, band, true);

@@ -229,19 +229,24 @@ static void fill_cell(const finding *f, const int at[3], const ptrdiff_t entry) 
 }
 
 static void fill_tables(const finding *f) {
-  const cf_segments *g = f->g;
+  cf_segments *g = f->g;
   const cf_split *s = f->s;
-#pragma omp parallel for schedule(static) num_threads(s->threads)
+  int any = 0;
+#pragma omp parallel for schedule(static) num_threads(s->threads) reduction(| : any)
   for (int k = g->low[2]; k < g->high[2]; ++k)
     for (int j = g->low[1]; j < g->high[1]; ++j) {
       const ptrdiff_t row = cf_segments_row(s, j, k);
       for (ptrdiff_t v = g->first[row]; v < g->first[row + 1]; ++v) {
         const cf_segment *q = &g->segment[v];
         if (q->table < 0) continue;
-        for (int i = 2 * q->from; i < 2 * q->to; ++i)
-          fill_cell(f, (int[]){i, j, k}, cf_segment_entry(q, i & 1, i / 2));
+        for (int i = 2 * q->from; i < 2 * q->to; ++i) {
+          const ptrdiff_t entry = cf_segment_entry(q, i & 1, i / 2);
+          fill_cell(f, (int[]){i, j, k}, entry);
+          any |= g->held[entry];
+        }
       }
     }
+  g->any_held = any != 0;
 }
 
 static cf_status find(finding *f) {

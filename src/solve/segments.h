@@ -43,6 +43,7 @@ typedef struct cf_segments {
   ptrdiff_t elements, elements_room; /* of tables */
   float *inverse, *diagonal;         /* 1/diagonal (0: no cell inside), the diagonal */
   unsigned char *faces, *held;       /* held: what known values add to the diagonal, in couplings: 2 a face */
+  bool any_held;                     /* some known value holds a cell of an edge segment */
   unsigned char *weight[3];          /* of interpolation, in units of 1/256 (coupled.h) */
 } cf_segments;
 

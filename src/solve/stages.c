@@ -45,6 +45,9 @@ void cf_stage_run(const cf_pass *p, const int number, const cf_strip *t) {
     case CF_PASS_BLACK:
       cf_stage_relax(s, t, 1, omega);
       break;
+    case CF_PASS_RED_EDGES: /* only segments have any */
+    case CF_PASS_BLACK_EDGES:
+      break;
     case CF_PASS_LAST:
       cf_stage_last(s, t, omega);
       break;
@@ -75,6 +78,6 @@ size_t cf_stage_scratch(const cf_split *s) {
 
 bool cf_stage_reads_around(const cf_pass_stage stage) {
   return stage == CF_PASS_SECOND || stage == CF_PASS_RED || stage == CF_PASS_BLACK || stage == CF_PASS_LAST ||
-         stage == CF_PASS_RESTRICT || stage == CF_PASS_RESTRICT_RED || stage == CF_PASS_RESIDUAL ||
-         stage == CF_PASS_UPDATE;
+         stage == CF_PASS_RED_EDGES || stage == CF_PASS_BLACK_EDGES || stage == CF_PASS_RESTRICT ||
+         stage == CF_PASS_RESTRICT_RED || stage == CF_PASS_RESIDUAL || stage == CF_PASS_UPDATE;
 }

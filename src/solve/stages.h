@@ -8,6 +8,7 @@
  *     FIRST        red: e = omega r / d, what a half sweep does to e = 0 (a part of FORM, UPDATE, RESTRICT)
  *     SECOND       black: e = omega (r + neighbours) / d, what the next half sweep does
  *     RED, BLACK   a half sweep of over-relaxed Gauss-Seidel
+ *     RED_EDGES, BLACK_EDGES  the same on edge segments (segments.h) alone
  *     LAST         a black half sweep that leaves the residual behind in r
  *     UPDATE       red: r -= A' e; all: x += gain e, and the sum of r^2; then FIRST on the new r
  *     RESTRICT     the residual of SECOND, averaged over the children of a coarse cell; FIRST on the coarse level
@@ -36,6 +37,8 @@ typedef enum cf_pass_stage {
   CF_PASS_SECOND,
   CF_PASS_RED,
   CF_PASS_BLACK,
+  CF_PASS_RED_EDGES,
+  CF_PASS_BLACK_EDGES,
   CF_PASS_LAST,
   CF_PASS_UPDATE,
   CF_PASS_RESTRICT,

@@ -68,20 +68,24 @@ CF_KERNEL void first(const int dim, const cf_split *s, const cf_strip *t, const 
   }
 }
 
-CF_KERNEL void relax(const int dim, const int fresh, const cf_split *s, const cf_strip *t, const int colour,
+/* FRESH: the half counts as 0, and so do the images of the other half's cells behind the walls. EDGES: on edge segments alone. */
+enum { ALL, FRESH, EDGES };
+
+CF_KERNEL void relax(const int dim, const int way, const cf_split *s, const cf_strip *t, const int colour,
                      const float omega) {
   const float keep = 1 - omega;
   piece q;
   CF_FOR_ROWS(j, t)
   FOR_PIECES(s, t, j, q) {
+    if (way == EDGES && !q.edge) continue;
     const cf_half h = half_of(dim, s, &q, colour);
-    if (fresh) {
+    if (way == FRESH) {
       const cf_half other = half_of(dim, s, &q, 1 - colour);
       set_images(s, &q, &other, 0);
     }
     CF_FOR_PIECE(m, &q.strip) {
       const float e = omega * h.inverse[m] * (h.r[m] + cf_around(dim, 1, &h, m));
-      h.e[m] = fresh ? e : keep * h.e[m] + e;
+      h.e[m] = way == FRESH ? e : keep * h.e[m] + e;
     }
   }
 }
@@ -283,27 +287,16 @@ CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
 
 /* --- to the coarse level ------------------------------------------------------------------------------ */
 
-/* What a piece of a fine row leaves to its coarse cells. */
+/* What a piece of a fine row leaves to its coarse cells: of its red ones, since the black half sweep before, with omega = 1, has
+ * left nothing on the others. */
 CF_KERNEL void gather(const int dim, const cf_split *s, const piece *q, float *coarse) {
-  const cf_half red = half_of(dim, s, q, 0), black = half_of(dim, s, q, 1);
-  const float left_red = 1 - s->omega[0], left_black = (1 - s->omega[1]) / s->omega[1];
-  if (q->edge) {
-    CF_FOR_PIECE(m, &q->strip) {
-      const float from_red = left_red * red.r[m] + cf_around(dim, 1, &red, m);
-      const float from_black = left_black * (black.diagonal[m] * black.e[m]);
-      coarse[m] += (red.faces[m] & CF_FACES_TRANSFER ? from_red : 0) +
-                   (black.faces[m] & CF_FACES_TRANSFER ? from_black : 0);
-    }
-    return;
-  }
-  const int end = CF_MIN(q->strip.to, s->half[0]), pairs = CF_MIN(end, s->half[1]);
+  const cf_half red = half_of(dim, s, q, 0);
+  const int end = CF_MIN(q->strip.to, s->half[red.parity]);
   CF_ROW_LOOP
-  for (int m = q->strip.from; m < pairs; ++m)
-    coarse[m] +=
-        (left_red * red.r[m] + cf_around(dim, 1, &red, m)) + left_black * (black.diagonal[m] * black.e[m]);
-  if (pairs == end) return;
-  coarse[pairs] += red.parity == 0 ? left_red * red.r[pairs] + cf_around(dim, 1, &red, pairs)
-                                   : left_black * (black.diagonal[pairs] * black.e[pairs]);
+  for (int m = q->strip.from; m < end; ++m) {
+    const float rest = (red.r[m] - red.diagonal[m] * red.e[m]) + cf_around(dim, 1, &red, m);
+    coarse[m] += !q->edge || red.faces[m] & CF_FACES_TRANSFER ? rest : 0;
+  }
 }
 
 /* The coarse row whose last child is row j of plane t->k. */
@@ -429,14 +422,16 @@ BOTH(form, (const cf_pass *p, const cf_strip *t), p, t)
 BOTH(restrict_rows, (const cf_pass *p, const cf_strip *t), p, t)
 BOTH(prolong_rows, (const cf_pass *p, const cf_strip *t), p, t)
 
-#define RELAX(name, dim, fresh)                                                                           \
+#define RELAX(name, dim, way)                                                                             \
   CF_CLONES static void name(const cf_split *s, const cf_strip *t, const int colour, const float omega) { \
-    relax(dim, fresh, s, t, colour, omega);                                                               \
+    relax(dim, way, s, t, colour, omega);                                                                 \
   }
-RELAX(relax_2d, 2, 0)
-RELAX(relax_3d, 3, 0)
-RELAX(second_2d, 2, 1)
-RELAX(second_3d, 3, 1)
+RELAX(relax_2d, 2, ALL)
+RELAX(relax_3d, 3, ALL)
+RELAX(second_2d, 2, FRESH)
+RELAX(second_3d, 3, FRESH)
+RELAX(edges_2d, 2, EDGES)
+RELAX(edges_3d, 3, EDGES)
 
 void cf_stage_on_segments(const cf_pass *p, const int number, const cf_strip *t, const float omega) {
   const cf_split *s = p->at;
@@ -458,19 +453,25 @@ void cf_stage_on_segments(const cf_pass *p, const int number, const cf_strip *t,
     case CF_PASS_BLACK:
       (deep ? relax_3d : relax_2d)(s, t, 1, omega);
       break;
+    case CF_PASS_RED_EDGES:
+      (deep ? edges_3d : edges_2d)(s, t, 0, omega);
+      break;
+    case CF_PASS_BLACK_EDGES:
+      (deep ? edges_3d : edges_2d)(s, t, 1, omega);
+      break;
     case CF_PASS_LAST:
       (deep ? last_3d : last_2d)(p, t, omega);
       break;
     case CF_PASS_UPDATE:
       (deep ? update_3d : update_2d)(p, t, omega);
       break;
-    case CF_PASS_RESTRICT:
+    case CF_PASS_RESTRICT_RED:
       (deep ? restrict_rows_3d : restrict_rows_2d)(p, t);
       break;
     case CF_PASS_PROLONG:
       (deep ? prolong_rows_3d : prolong_rows_2d)(p, t);
       break;
-    default: /* CLEAR and RESIDUAL are for odd seams, which have no segments */
+    default: /* RESTRICT, CLEAR and RESIDUAL are for cycles and seams that segments do not have */
       break;
   }
 }

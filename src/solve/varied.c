@@ -10,8 +10,9 @@
 #include "grid/halo.h"
 #include "solve/varied_part.h"
 
-/* Full sweeps after the coarse correction below the finest level, where they cost little. */
-#define COARSE_SWEEPS 3
+/* Full sweeps after the coarse correction below the finest level, where they cost little: in a V-cycle; in a W-cycle. */
+#define COARSE_SWEEPS_V 3
+#define COARSE_SWEEPS_W 1
 /* On a coarsest level that is not eliminated because little is left to smooth there. */
 #define LAST_SWEEPS 4
 /* Elimination may take so much for every cell of the finest level, and so much at all. */
@@ -340,7 +341,7 @@ static void careful_cycle(const cf_varied *v, const int at) {
 }
 
 void cf_varied_cycle(const cf_varied *v, const int at) {
-  const cf_coupled *l = &v->level[at];
+  const cf_coupled *l = &v->level[at], *coarse = l + 1;
   if (v->careful) {
     careful_cycle(v, at);
     return;
@@ -350,8 +351,14 @@ void cf_varied_cycle(const cf_varied *v, const int at) {
     return;
   }
   cf_coupled_smooth_first(l, OMEGA, v->band_sweeps, true);
-  cf_coupled_restrict(l, &v->level[at + 1]);
+  cf_coupled_restrict(l, coarse);
   cf_varied_cycle(v, at + 1);
-  cf_coupled_prolong(&v->level[at + 1], l);
-  cf_coupled_smooth(l, OMEGA, v->band_sweeps, at == 0 ? 1 : COARSE_SWEEPS);
+  if (v->thorough && at + 1 < v->depth - 1) {
+    cf_coupled_prolong(coarse, l);
+    cf_coupled_smooth_again(l, OMEGA);
+    cf_coupled_restrict(l, coarse);
+    cf_varied_cycle(v, at + 1);
+  }
+  cf_coupled_prolong(coarse, l);
+  cf_coupled_smooth(l, OMEGA, v->band_sweeps, at == 0 ? 1 : v->thorough ? COARSE_SWEEPS_W : COARSE_SWEEPS_V);
 }

@@ -119,7 +119,7 @@ cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options 
     cf_varied_clear(v, x);
     return CF_OK;
   }
-  v->careful = false;
+  v->careful = v->thorough = false;
   v->band_sweeps = (cf_band_sweeps){BAND_SWEEPS, 1}; /* over-relaxed ones do harm in necks of a cell */
   approach(v, b, o->tolerance * o->tolerance * s.second, o->max_iterations, x, &s, &report->iterations);
   return cf_varied_judge(v, &s, o, report);

@@ -20,7 +20,8 @@ struct cf_varied {
   int levels, depth; /* made; in use */
   bool sweeps;       /* half sweeps alone do; `jacobi`: the most that diffusion has of a diagonal */
   double jacobi;
-  bool careful;               /* the cycle is symmetric: slower, and never led astray */
+  bool careful;  /* the cycle is symmetric: slower, and never led astray */
+  bool thorough; /* two corrections from each level below, without sweeps of their own near walls */
   cf_band_sweeps band_sweeps; /* near walls, before and after the coarse correction */
   cf_band band;
   cf_pockets pockets;

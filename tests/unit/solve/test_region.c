@@ -252,7 +252,7 @@ static void a_ball_costs_little(void **state) {
       scene_begin(&s, dim, dim == 2 ? 192 : 48, 48);
       const cf_shape ball = cf_shape_sphere((double[]){0.47, 0.53, dim == 3 ? 0.5 : 0}, 0.23);
       OK(cf_region_add(s.region, &ball, NULL, 0, (cf_cell_kind)kind, NULL));
-      for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "ball"), 8);
+      for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "ball"), 6);
       scene_end(&s);
     }
 }
@@ -309,7 +309,7 @@ static void a_slalom_of_plates_costs_little(void **state) {
         scene s;
         scene_begin(&s, dim, dim == 2 ? 96 : 48, 40);
         slalom(&s, plates, thickness);
-        for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "slalom"), 10);
+        for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "slalom"), 8);
         scene_end(&s);
       }
 }
@@ -328,7 +328,7 @@ static void a_porous_block_takes_few_iterations(void **state) {
                 CF_CELL_WALL;
         }
     /* grains of a single cell leave necks that no coarse cell knows of: 10 mostly, but 18 where alpha is small and pockets many */
-    for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "porous"), grain == 1 ? 18 : 15);
+    for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "porous"), grain == 1 ? 18 : 8);
     scene_end(&s);
   }
 }
