@@ -18,13 +18,14 @@ typedef double cf_eight_doubles __attribute__((vector_size(64), aligned(8), may_
 typedef float cf_eight_floats __attribute__((vector_size(32), aligned(4), may_alias));
 typedef float cf_sixteen_floats __attribute__((vector_size(64), aligned(4), may_alias));
 
-#define CF_EIGHT_OF_DOUBLES(p) (*(const cf_eight_doubles *)(p))
-#define CF_EIGHT_OF_FLOATS(p)  __builtin_convertvector(*(const cf_eight_floats *)(p), cf_eight)
-#define CF_SIXTEEN_OF(p)       (*(const cf_sixteen_floats *)(p))
+#define CF_EIGHT_OF_DOUBLES(p)     (*(const cf_eight_doubles *)(p))
+#define CF_EIGHT_OF_FLOATS(p)      __builtin_convertvector(*(const cf_eight_floats *)(p), cf_eight)
+#define CF_SIXTEEN_OF(p)           (*(const cf_sixteen_floats *)(p))
+#define CF_EIGHT_INTO_FLOATS(p, v) (*(cf_eight_floats *)(p) = __builtin_convertvector(v, cf_eight_floats))
 /* As many of cf_real. */
 #ifdef CF_SINGLE
-#define CF_EIGHT_OF         CF_EIGHT_OF_FLOATS
-#define CF_EIGHT_INTO(p, v) (*(cf_eight_floats *)(p) = __builtin_convertvector(v, cf_eight_floats))
+#define CF_EIGHT_OF   CF_EIGHT_OF_FLOATS
+#define CF_EIGHT_INTO CF_EIGHT_INTO_FLOATS
 #else
 #define CF_EIGHT_OF         CF_EIGHT_OF_DOUBLES
 #define CF_EIGHT_INTO(p, v) (*(cf_eight_doubles *)(p) = (v))
@@ -33,5 +34,8 @@ typedef float cf_sixteen_floats __attribute__((vector_size(64), aligned(4), may_
 /* a0 b0 a1 b1 ...: the first half of them, and the second. */
 #define CF_EIGHT_WOVEN_LOW(a, b)  __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11)
 #define CF_EIGHT_WOVEN_HIGH(a, b) __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15)
+/* Of sixteen in a row, a and then b, those with even places, and those with odd ones. */
+#define CF_EIGHT_EVEN(a, b) __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14)
+#define CF_EIGHT_ODD(a, b)  __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15)
 
 #endif

@@ -188,8 +188,11 @@ static void run_tile(const cf_wave *w, const cf_pass *p, const window *win, cons
                      const int height, const int tiles) {
   tile at = tile_of(p, win);
   const int first = p->at->dim == 3 ? win->k : 0;
-  at.j += number * height;
-  if (number + 1 < tiles) at.end = at.j + height;
+  /* A leaning tile at the low wall has less to do than its height tells, the one at the high wall more: half the lean makes up
+   * for both. */
+  const int low = win->j + (at.end - win->j_end) / 2 + number * height;
+  if (number > 0) at.j = low;
+  if (number + 1 < tiles) at.end = low + height;
   for (int step = 0; step < at.steps; ++step) {
     if (number > 0) wait_for(&w->done[number - 1], step + 1);
     for (int j = at.j; j < at.end; j += BLOCK_ROWS)
