@@ -3,8 +3,11 @@
  * The program: finds the command, reads its options, runs it, and says what went wrong. Results go to stdout,
  * everything else to stderr; exit codes are those of base/status.h.
  */
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/command.h"
 #include "app/tell.h"
@@ -60,7 +63,18 @@ static int command_main(const cf_command *c, const int argc, char **argv) {
   return finish(status, told);
 }
 
+/* A stream that whoever started the program has closed would lend its number to the next file that is opened, and what is
+ * meant for a terminal would be written there. A limit on the size of files is told like a full disk. */
+static void settle(void) {
+  int file;
+  do file = open("/dev/null", O_RDONLY);
+  while (file >= 0 && file <= STDERR_FILENO);
+  if (file > STDERR_FILENO) close(file);
+  signal(SIGXFSZ, SIG_IGN);
+}
+
 int main(const int argc, char **argv) {
+  settle();
   if (argc < 2) {
     cf_help_overview(stderr);
     return cf_status_exit_code(CF_BAD_USAGE);

@@ -50,6 +50,7 @@ static void become_ffmpeg(const film *f, const int from) {
          "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-preset", "slow", "-crf", "16",
          "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709",
          "-movflags", "+faststart", "-f", "mp4", f->draft.temporary.text, (char *)NULL);
+  if (errno != ENOENT) perror("ffmpeg");
   _exit(NOT_STARTED);
 }
 
@@ -86,6 +87,8 @@ static cf_status finish(film *f, const cf_status so_far) {
   const int code = WIFEXITED(how) ? WEXITSTATUS(how) : 128;
   if (so_far == CF_OK && code == 0) return cf_draft_keep(&f->draft);
   cf_draft_drop(&f->draft);
+  if (code == NOT_STARTED && said[0] != '\0')
+    return cf_fail(CF_FAILED, "ffmpeg, which films are made with, cannot be started: %s", said);
   if (code == NOT_STARTED)
     return cf_fail(CF_FAILED, "ffmpeg is not installed, and films are made with it: apt-get install ffmpeg");
   if (so_far != CF_OK && so_far != CF_CANNOT_WRITE) return so_far;
@@ -144,6 +147,7 @@ cf_status cf_movie_command(cf_arguments *a) {
   cf_stop_watch();
   cf_status status = a->output != NULL ? cf_path_make(&path, "%s", a->output)
                                        : cf_path_make(&path, "%s/movie.mp4", s.folder);
+  if (status == CF_OK) status = cf_draft_try(path.text);
   if (status == CF_OK) status = cf_draft_begin(&f.draft, path.text);
   if (status == CF_OK) status = cf_showing_range(1, &s, &from, &to);
   if (status == CF_OK) status = film_all(&f, &s, a->progress != CF_PROGRESS_NONE);

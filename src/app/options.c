@@ -17,6 +17,7 @@
 #include "base/param.h"
 #include "base/real.h"
 #include "base/units.h"
+#include "io/folder.h"
 
 const cf_option cf_option_table[CF_OPTIONS] = {
 #define CF_OPTION_ROW(upper, name, letter, value, doc) {name, letter, value, doc},
@@ -315,7 +316,8 @@ void cf_arguments_clear(cf_arguments *a) {
 
 cf_status cf_arguments_check_file(const cf_arguments *a, const char *ending) {
   const size_t length = a->output != NULL ? strlen(a->output) : 0, end = strlen(ending);
-  if (a->output == NULL || (length > end && strcasecmp(a->output + length - end, ending) == 0)) return CF_OK;
+  if (a->output == NULL) return CF_OK;
+  if (length > end && strcasecmp(a->output + length - end, ending) == 0) return cf_draft_try(a->output);
   return cf_fail(CF_BAD_USAGE, "-o %.200s: the name must end in %s, as what is written there", a->output,
                  ending);
 }

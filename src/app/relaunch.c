@@ -63,7 +63,7 @@ static bool made_by_sister(FILE *file) {
 cf_status cf_relaunch_as_run(char **argv, const char *folder) {
   cf_path path;
   if (cf_path_make(&path, "%s/run.yaml", folder) != CF_OK) return CF_OK; /* opening it will say why */
-  FILE *file = fopen(path.text, "r");
+  FILE *file = cf_file_stream(path.text);
   if (file == NULL) return CF_OK;
   const bool sister = made_by_sister(file);
   fclose(file);

@@ -63,6 +63,7 @@ static cf_status render_one(cf_showing *s, const cf_arguments *a) {
     cf_canvas c;
     CF_TRY(a->output != NULL ? cf_path_make(&path, "%s", a->output)
                              : cf_path_make(&path, "%s/render_%06" PRId64 ".png", s->folder, s->number[i]));
+    CF_TRY(cf_draft_try(path.text));
     CF_TRY(picture_of(s, s->number[i], &c));
     const cf_status status = write_picture(path.text, &c, s->exhibit.title, s->exhibit.time);
     cf_canvas_destroy(&c);

@@ -5,13 +5,14 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "io/folder.h"
 #include "io/scene_text.h"
 
 enum { LINE = 16384 };
 
 /* The first and the last whole line of a file; false: it has no two of them. */
 static bool ends_of(const char *path, char *first, char *last) {
-  FILE *f = fopen(path, "r");
+  FILE *f = cf_file_stream(path);
   int lines = 0;
   if (f == NULL) return false;
   char line[LINE];

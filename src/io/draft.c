@@ -45,6 +45,19 @@ cf_status cf_draft_begin(cf_draft *d, const char *path) {
   return cf_path_make(&d->temporary, "%s/.%s.%ld.part", folder.text, name, (long)getpid());
 }
 
+cf_status cf_draft_try(const char *path) {
+  cf_draft d;
+  struct stat facts;
+  CF_TRY(cf_draft_begin(&d, path));
+  if (stat(path, &facts) == 0 && S_ISDIR(facts.st_mode))
+    return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: it is a folder", path);
+  const int file = open(d.temporary.text, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0) return cf_fail(CF_CANNOT_WRITE, "%s: cannot be written: %s", path, strerror(errno));
+  close(file);
+  cf_draft_drop(&d);
+  return CF_OK;
+}
+
 static cf_status sync_path(const char *path, const int flags) {
   const int file = open(path, flags | O_RDONLY | O_CLOEXEC);
   if (file < 0) return cf_fail(CF_CANNOT_WRITE, "%s: cannot be opened again: %s", path, strerror(errno));
@@ -108,19 +121,36 @@ static cf_status read_all(FILE *file, const char *path, const size_t size, char 
   return CF_OK;
 }
 
-cf_status cf_file_read(const char *path, const size_t most, char **text, size_t *size) {
-  *text = NULL;
-  FILE *file = fopen(path, "rbe");
-  if (file == NULL) return cf_fail(CF_BAD_FILE, "%s: cannot be read: %s", path, strerror(errno));
+FILE *cf_file_stream(const char *path) {
+  const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  FILE *stream = file < 0 ? NULL : fdopen(file, "rb");
+  if (file >= 0 && stream == NULL) close(file);
+  return stream;
+}
+
+cf_status cf_file_open(const char *path, FILE **file, size_t *size) {
   struct stat facts;
+  *file = cf_file_stream(path);
+  if (*file == NULL) return cf_fail(CF_BAD_FILE, "%s: cannot be read: %s", path, strerror(errno));
+  if (fstat(fileno(*file), &facts) == 0 && S_ISREG(facts.st_mode)) {
+    *size = (size_t)facts.st_size;
+    return CF_OK;
+  }
+  fclose(*file);
+  *file = NULL;
+  return cf_fail(CF_BAD_FILE, "%s: is not a file", path);
+}
+
+cf_status cf_file_read(const char *path, const size_t most, char **text, size_t *size) {
+  FILE *file;
+  size_t bytes;
+  *text = NULL;
+  CF_TRY(cf_file_open(path, &file, &bytes));
   cf_status s = CF_OK;
-  if (fstat(fileno(file), &facts) != 0 || !S_ISREG(facts.st_mode))
-    s = cf_fail(CF_BAD_FILE, "%s: is not a file", path);
-  else if ((size_t)facts.st_size > most)
-    s = cf_fail(CF_BAD_FILE, "%s: has %lld bytes, more than the %zu that make sense", path,
-                (long long)facts.st_size, most);
-  if (s == CF_OK) s = CF_NEW(text, (size_t)facts.st_size + 1);
-  if (s == CF_OK) s = read_all(file, path, (size_t)facts.st_size, *text, size);
+  if (bytes > most)
+    s = cf_fail(CF_BAD_FILE, "%s: has %zu bytes, more than the %zu that make sense", path, bytes, most);
+  if (s == CF_OK) s = CF_NEW(text, bytes + 1);
+  if (s == CF_OK) s = read_all(file, path, bytes, *text, size);
   fclose(file);
   if (s != CF_OK) {
     cf_free(*text);

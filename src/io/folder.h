@@ -37,6 +37,9 @@ typedef struct cf_draft {
 /* Chooses the temporary name for `path`; touches nothing. */
 cf_status cf_draft_begin(cf_draft *d, const char *path);
 
+/* Before long work for a file: whether its folder can be written, and its name is no folder's. CF_CANNOT_WRITE. */
+cf_status cf_draft_try(const char *path);
+
 /* Syncs the temporary file (which must be closed), gives it its name, syncs the folder. On failure the
  * temporary file is gone and whatever stood at `path` is as it was. CF_CANNOT_WRITE. */
 cf_status cf_draft_keep(const cf_draft *d);
@@ -50,6 +53,12 @@ cf_status cf_file_fill(const char *path, bool (*fill)(FILE *file, const void *wh
 
 /* A small file, whole or not at all. CF_CANNOT_WRITE. */
 cf_status cf_file_write(const char *path, const void *bytes, size_t size);
+
+/* A file to be read. What is no file, a pipe that nobody writes to or a device without an end, is never waited for:
+ * the first returns NULL and errno, and leaves it to the caller to look what was opened; the second refuses it, and
+ * says how many bytes there are now. CF_BAD_FILE. */
+FILE *cf_file_stream(const char *path);
+cf_status cf_file_open(const char *path, FILE **file, size_t *size);
 
 /* A small file (at most `most` bytes), zero-terminated; the text is the caller's: cf_free. CF_BAD_FILE. */
 cf_status cf_file_read(const char *path, size_t most, char **text, size_t *size);

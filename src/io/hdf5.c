@@ -88,8 +88,9 @@ cf_status cf_hdf5_open(cf_hdf5 *h, const char *path) {
   *h = (cf_hdf5){.file = -1};
   CF_TRY(cf_mem_room(HDF5_ROOM));
   CF_TRY(cf_path_make(&h->draft.path, "%s", path));
-  FILE *file = fopen(path, "rbe"); /* for the system's own words */
-  if (file == NULL) return cf_fail(CF_BAD_FILE, "%s: cannot be opened: %s", path, strerror(errno));
+  FILE *file;
+  size_t size;
+  CF_TRY(cf_file_open(path, &file, &size)); /* for the system's own words */
   fclose(file);
   enter(h);
   const hid_t access = access_list();

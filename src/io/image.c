@@ -137,12 +137,11 @@ cf_status cf_image_write_deep(const char *path, const int width, const int heigh
   return write_whole(path, &(picture){width, height, channels, 16, values, 0, NULL});
 }
 
-static cf_status read_as(const char *path, const png_uint_32 format, int *width, int *height,
-                         uint8_t **pixels) {
+static cf_status read_stream(const char *path, FILE *file, const png_uint_32 format, int *width, int *height,
+                             uint8_t **pixels) {
   png_image image = {.version = PNG_IMAGE_VERSION};
   const png_color white = {255, 255, 255};
-  *pixels = NULL;
-  if (!png_image_begin_read_from_file(&image, path))
+  if (!png_image_begin_read_from_stdio(&image, file))
     return cf_fail(CF_BAD_FILE, "%s: is no PNG picture that can be read: %s", path, image.message);
   image.format = format;
   cf_status s = CF_OK;
@@ -161,6 +160,17 @@ static cf_status read_as(const char *path, const png_uint_32 format, int *width,
   *width = (int)image.width;
   *height = (int)image.height;
   return CF_OK;
+}
+
+static cf_status read_as(const char *path, const png_uint_32 format, int *width, int *height,
+                         uint8_t **pixels) {
+  FILE *file;
+  size_t size;
+  *pixels = NULL;
+  CF_TRY(cf_file_open(path, &file, &size));
+  const cf_status s = read_stream(path, file, format, width, height, pixels);
+  fclose(file);
+  return s;
 }
 
 cf_status cf_image_read(const char *path, int *width, int *height, uint8_t **rgb) {

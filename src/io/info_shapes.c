@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "io/folder.h"
 #include "io/info_part.h"
 #include "io/mesh.h"
 #include "io/vdb.h"
@@ -31,7 +32,7 @@ static cf_status say_box(cf_report *r, const char *indent, const double low[3], 
 static cf_status say_comments(cf_report *r, const char *path) {
   char line[256];
   cf_status s = CF_OK;
-  FILE *file = fopen(path, "rbe");
+  FILE *file = cf_file_stream(path);
   if (file == NULL) return CF_OK; /* it could be read a moment ago */
   while (s == CF_OK && fgets(line, sizeof line, file) != NULL && strncmp(line, "end_header", 10) != 0) {
     if (strncmp(line, "comment ", 8) != 0 || strncmp(line + 8, "unit of ", 8) == 0) continue;

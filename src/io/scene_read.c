@@ -12,6 +12,7 @@
 
 #include "base/mem.h"
 #include "base/real.h"
+#include "io/folder.h"
 #include "io/scene_value.h"
 
 enum { NAME_MAX_LENGTH = 63, ENTRIES_MAX = 1000 };
@@ -47,7 +48,7 @@ static cf_status read_stream(cf_config *config, FILE *stream, const char *path) 
 static cf_status read_file(cf_config *config, const char *path) {
   if (path[0] == '\0')
     return cf_fail(CF_BAD_SCENE, "'': error: the name of the scene is empty\ntry: cattaneo examples");
-  FILE *stream = fopen(path, "rbe");
+  FILE *stream = cf_file_stream(path);
   if (stream == NULL) return fail_file(path, errno == ENOENT ? "there is no such file" : strerror(errno));
   const cf_status status = read_stream(config, stream, path);
   fclose(stream);

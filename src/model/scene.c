@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+#include "base/locale.h"
 #include "base/mem.h"
 #include "io/scene.h"
 #include "model/model.h"
@@ -140,7 +141,9 @@ cf_status cf_scene_read(cf_scene **scene, const char *path, const int overrides,
   *scene = NULL;
   cf_scene *fresh;
   CF_TRY(CF_NEW(&fresh, 1));
+  void *before = cf_locale_plain();
   const cf_status status = read_into(fresh, path, &given);
+  cf_locale_back(before);
   if (status != CF_OK) {
     cf_scene_destroy(fresh);
     return status;
@@ -173,11 +176,17 @@ static bool is_read(const void *scene, const char *key) {
 }
 
 cf_status cf_scene_write(const cf_scene *scene, char **text) {
-  return cf_config_write(&cf_scene_table, scene, is_read, text);
+  void *before = cf_locale_plain();
+  const cf_status status = cf_config_write(&cf_scene_table, scene, is_read, text);
+  cf_locale_back(before);
+  return status;
 }
 
 cf_status cf_scene_explain(const char *key, char **text) {
-  return cf_config_explain(&cf_scene_table, key, text);
+  void *before = cf_locale_plain();
+  const cf_status status = cf_config_explain(&cf_scene_table, key, text);
+  cf_locale_back(before);
+  return status;
 }
 
 /* --- names ------------------------------------------------------------------------------------ */

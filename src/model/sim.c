@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/locale.h"
 #include "base/mem.h"
 #include "base/threads.h"
 #include "model/obstacles.h"
@@ -103,7 +104,9 @@ cf_status cf_sim_create(cf_sim **sim, const cf_scene *scene, const int threads) 
   fresh->scene = scene;
   fresh->model = cf_model_of(scene->model);
   fresh->end = scene->time.end;
+  void *before = cf_locale_plain();
   const cf_status s = create(fresh, threads);
+  cf_locale_back(before);
   if (s != CF_OK) {
     cf_sim_destroy(fresh);
     return s;

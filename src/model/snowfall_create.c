@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/mem.h"
@@ -177,10 +178,12 @@ static cf_status register_all(cf_snowfall *s, cf_registry *r) {
 }
 
 static cf_status read_atlas(cf_snowfall *s) {
-  if (access(s->keys->atlas, R_OK) != 0)
+  struct stat facts;
+  const bool there = stat(s->keys->atlas, &facts) == 0 && access(s->keys->atlas, R_OK) == 0;
+  if (!there || !S_ISREG(facts.st_mode))
     return cf_scene_fail_at(s->scene, "snowfall.atlas",
                             "snowfall.atlas: %s: %s (cattaneo atlas makes one of grown crystals)",
-                            s->keys->atlas, strerror(errno));
+                            s->keys->atlas, there ? "is not a file" : strerror(errno));
   CF_TRY(cf_atlas_read(&s->atlas, s->keys->atlas));
   CF_TRY(CF_NEW(&s->shape, s->atlas->flakes.count));
   for (int i = 0; i < s->atlas->flakes.count; ++i) CF_TRY(cf_atlas_measure(s->atlas, i, &s->shape[i]));

@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -207,6 +208,31 @@ class Scenes(Case):
         self.refuses("check", "none.yaml", says="none.yaml")
         self.refuses("run", ".", says=".")
 
+    def test_what_is_no_file_is_never_waited_for(self):
+        """A pipe that nobody writes to, a device without an end, a folder, by a name that a scene or a user gives."""
+        here = str(self.folder)
+        phase = self.scene("cattaneo: 1\nmodel: phase\ndomain: {size: [1, 1], cells: [16, 16]}\ntime: {end: 1}\n", "p.yaml")
+        snow = self.scene("cattaneo: 1\nmodel: snowfall\ndomain: {size: [1, 1, 1], cells: [8, 8, 8]}\ntime: {end: 1}\n", "s.yaml")
+        os.mkfifo(self.folder / "pipe")
+        (self.folder / "run").mkdir()
+        os.mkfifo(self.folder / "run/run.yaml")
+        for ending in ("npy", "ply", "png"):
+            for what in ("pipe", "zero", "folder"):
+                to = {"pipe": f"{here}/pipe", "zero": "/dev/zero", "folder": here}[what]
+                name = f"{what}.{ending}"
+                (self.folder / name).symlink_to(to)
+                words = ((phase, f"phase.maps.mask.file={name}") if ending == "png"
+                         else (self.scene(), f"obstacles=[{{shape: file, file: {name}}}]"))
+                self.refuses("check", words[0], "--set", words[1], says=f"{name}: is not a file")
+        said = self.refuses("check", snow, "--set", "snowfall.atlas=pipe", says="pipe: is not a file")
+        self.assertIn("cattaneo atlas", said)
+        self.refuses("check", "pipe", says="this is not a file")
+        self.refuses("info", "pipe.ply", says="is not a file", code=1)
+        for name in ("pipe.h5", "pipe.vtkhdf"):
+            (self.folder / name).symlink_to("pipe")
+            self.refuses("info", name, says="is not a file", code=1)
+        self.assertIn("this is not a file", self.call("resume", "run").stderr)
+
     def test_an_override_follows_the_same_path(self):
         self.refuses("run", self.scene(), "--set", "diffusion.tau=-1", says="diffusion.tau")
         self.refuses("run", self.scene(), "--set", "diffusion.tua=1", says="did you mean")
@@ -356,6 +382,23 @@ class Pictures(Case):
             self.assertEqual((done.returncode, done.stdout), (0, "ring/movie.mp4\n"), done.stderr)
             self.assertIn(b"ftyp", (self.folder / "ring/movie.mp4").read_bytes()[:12])
 
+    def test_where_nothing_can_be_written_is_told_before_the_work(self):
+        self.run_ring()
+        for name in ("folder.png", "folder.mp4"):
+            (self.folder / name).mkdir()
+        for words in (("render", "ring", "-o", "{}.png"), ("movie", "ring", "-o", "{}.mp4"),
+                      ("sheet", "ring", "ring", "-o", "{}.png")):
+            for place, says in (("folder", "it is a folder"), ("nowhere/x", "No such file or directory")):
+                said = self.refuses(*[word.format(place) for word in words], says=says, code=1)
+                self.assertEqual(len(said.splitlines()), 1, said)  # no frame was drawn
+
+    def test_an_ffmpeg_that_does_not_start_is_not_called_missing(self):
+        self.run_ring()
+        (self.folder / "ffmpeg").write_text("no program")
+        done = self.call("movie", "ring", environment={**os.environ, "PATH": str(self.folder)})
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "ffmpeg.* cannot be started: .*Permission denied")
+
     def test_an_atlas_is_made_of_crystals(self):
         self.run_ring()
         self.refuses("atlas", "ring", says="-o DIR is missing")
@@ -489,14 +532,36 @@ class Runs(Case):
             self.assertEqual(again.returncode, 0, again.stderr)
 
     def test_a_wall_limit_ends_a_run_in_time_with_a_checkpoint(self):
-        name = self.scene(SCENE.replace("end: 1,", "end: 100000,").replace("frames: 5", "frames: 0"))
-        began = time.monotonic()
-        done = self.call("run", name, "-o", "d", "--wall-limit", "1 s", "--progress", "none")
-        self.assertEqual((done.returncode, done.stdout), (130, ""), done.stderr)
-        self.assertLess(time.monotonic() - began, 60)  # it ends at all; how soon, a busy machine decides
-        self.assertRegex(done.stderr, r"^the time limit is reached: stopped at step \d+ .*cattaneo resume d\n$")
-        self.assertTrue(list((self.folder / "d").glob("checkpoint_*.h5")))
-        self.assertEqual(self.call("resume", "d", "--wall-limit", "1 ms").returncode, 130)
+        for frames in ("frames: 0", "frames: 0.1"):
+            name = self.scene(SCENE.replace("end: 1,", "end: 100000,").replace("frames: 5", frames))
+            began = time.monotonic()
+            done = self.call("run", name, "-o", "d", "--wall-limit", "1 s", "--progress", "none", "--force")
+            self.assertEqual((done.returncode, done.stdout), (130, ""), done.stderr)
+            self.assertLess(time.monotonic() - began, 60)  # it ends at all; how soon, a busy machine decides
+            self.assertRegex(done.stderr, r"^the time limit is reached: stopped at step \d+ .*cattaneo resume d\n$")
+            self.assertTrue(list((self.folder / "d").glob("checkpoint_*.h5")))
+            self.assertEqual(self.call("resume", "d", "--wall-limit", "1 ms").returncode, 130)
+
+    def test_what_is_said_into_closed_streams_is_in_no_file(self):
+        def close():
+            for stream in (0, 1, 2):
+                os.close(stream)
+
+        name = self.scene()
+        self.assertEqual(self.call("run", name, "-o", "open").returncode, 0)
+        run = subprocess.Popen([PROGRAM, "run", name, "-o", "closed", "--progress", "plain"], cwd=self.folder,
+                               preexec_fn=close)
+        self.assertEqual(run.wait(timeout=60), 1)  # the name of the folder could not be told
+        for p in (self.folder / "open").iterdir():
+            if p.name not in ("log.txt", ".lock"):
+                self.assertTrue(p.read_bytes() == (self.folder / "closed" / p.name).read_bytes(), p.name)
+
+    def test_a_limit_on_the_size_of_files_is_told_like_a_full_disk(self):
+        done = subprocess.run([PROGRAM, "run", self.scene(), "-o", "d", "--progress", "none"], cwd=self.folder,
+                              capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)))
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, r"^cattaneo: d/fields_000000.vtkhdf: .*: File too large")
 
     def test_a_closed_pipe_does_not_end_a_run(self):
         run = subprocess.Popen([PROGRAM, "run", self.scene(), "-o", "d", "--progress", "plain"], cwd=self.folder,
