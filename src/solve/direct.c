@@ -15,7 +15,7 @@ static double coefficient(const cf_level *l, const int a, const int i, const int
 static int neighbour(const cf_axis *axis, const int i, const int high) {
   const int next = high ? i + 1 : i - 1;
   if (next >= 0 && next < axis->n) return next;
-  return axis->periodic && axis->n > 1 ? (high ? 0 : axis->n - 1) : -1;
+  return axis->periodic ? (high ? 0 : axis->n - 1) : -1;
 }
 
 static double volume_at(const cf_level *l, const int at[3]) {

@@ -8,7 +8,7 @@
  * lo_a and hi_a are tables along axis a alone:
  * 1/(width of the cell * distance to the neighbour). They hold the walls as well, so no kernel asks where it
  * is: 0 on an insulated wall, 1/(w * w/2) on a held one (the ghost behind it stays 0; values of a wall are
- * part of the right side), and the distance around the seam on a periodic axis.
+ * part of the right side), and the distance around the seam on a periodic axis. One cell does not go around: it is no neighbour of its own.
  *
  * Coarse cells are pairs of fine cells per axis; where the count is odd the last one is a triple, so every
  * extent coarsens down to 1 and a wall never moves. Hence widths vary (in the last cell of an axis), and the

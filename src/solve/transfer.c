@@ -32,7 +32,7 @@ static double metric(const cf_axis *axis, const int i, const int side, const dou
   double distance = 0;
   if (!at_wall)
     distance = 0.5 * (axis->width[i] + axis->width[neighbour]);
-  else if (axis->periodic && axis->n > 1)
+  else if (axis->periodic)
     distance = 0.5 * (axis->width[i] + axis->width[side == 0 ? axis->n - 1 : 0]);
   else if (axis->held[side])
     distance = 0.5 * axis->width[i];
@@ -48,7 +48,7 @@ static void fill_metrics(cf_axis *axis, const double h) {
 
 cf_status cf_axis_create(cf_axis *axis, const int n, const double h, const cf_wall wall[2]) {
   CF_TRY(axis_allocate(axis, n));
-  axis->periodic = wall[0] == CF_WALL_PERIODIC;
+  axis->periodic = wall[0] == CF_WALL_PERIODIC && n > 1;
   for (int side = 0; side < 2; ++side) axis->held[side] = cf_wall_is_held(wall[side]);
   for (int i = 0; i < n; ++i) axis->width[i] = 1;
   fill_metrics(axis, h);
@@ -75,11 +75,11 @@ static void interpolate(cf_pairing *p, const cf_axis *coarse, const int i, const
   if (offset == 0) return;
   const double size = offset > 0 ? offset : -offset;
   const bool at_wall = other < 0 || other >= coarse->n;
-  if (!at_wall || (coarse->periodic && coarse->n > 1)) {
+  if (!at_wall || coarse->periodic) {
     const int image = other < 0 ? coarse->n - 1 : other >= coarse->n ? 0 : other;
     away = size / (0.5 * (coarse->width[parent] + coarse->width[image]));
     p->other[i] = other;
-  } else if (!coarse->periodic && coarse->held[side]) {
+  } else if (coarse->held[side]) {
     away = size / (0.5 * coarse->width[parent]);
     p->other[i] = other; /* a ghost, 0 */
   }
@@ -101,7 +101,7 @@ cf_status cf_axis_coarsen(const cf_axis *fine, const bool coarsened, const doubl
   p->coarsened = coarsened;
   CF_TRY(pairing_allocate(p, fine->n));
   CF_TRY(axis_allocate(coarse, n));
-  coarse->periodic = fine->periodic;
+  coarse->periodic = fine->periodic && n > 1;
   memcpy(coarse->held, fine->held, sizeof fine->held);
   for (int i = 0; i < fine->n; ++i) {
     p->parent[i] = coarsened ? CF_MIN(i / 2, n - 1) : i;

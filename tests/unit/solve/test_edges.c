@@ -252,6 +252,34 @@ static void a_good_guess_needs_no_work(void **state) {
 }
 
 /* What lies in a caller's ghosts is no part of the system. */
+/* x of a box that is one cell thick along `thin`, and goes around there or is closed there. */
+static void thin_box(const int thin, const bool around, const double sigma, solve_setup *s) {
+  char walls[] = "oop";
+  solve_case c = {.dim = 3, .n = {21, 18, 34}, .sigma = sigma, .walls = walls, .side = SIDE_MIXED};
+  c.n[thin] = 1;
+  walls[thin] = around ? 'p' : 'i';
+  case_begin(&c, s);
+  cf_solve_report report;
+  OK(cf_helmholtz_solve(s->A, s->b, &usual, s->x, &report));
+  assert_true(report.converged);
+  assert_true(cf_helmholtz_residual(s->A, s->x, s->b) < 1e-8);
+}
+
+static void an_axis_of_one_cell_does_not_go_around(void **state) {
+  (void)state;
+  static const double sigmas[] = {0.1, 2, 40, INFINITY};
+  for (int thin = 0; thin < 3; ++thin)
+    for (int i = 0; i < 4; ++i) {
+      solve_setup s[2];
+      for (int around = 0; around < 2; ++around) thin_box(thin, around, sigmas[i], &s[around]);
+      for (ptrdiff_t r = 0; r < cf_box_rows(&s[0].g.box); ++r) {
+        const ptrdiff_t p = cf_box_row(&s[0].g.box, r);
+        assert_memory_equal(s[0].x.at + p, s[1].x.at + p, (size_t)s[0].g.box.n[0] * sizeof(cf_real));
+      }
+      for (int around = 0; around < 2; ++around) case_end(&s[around]);
+    }
+}
+
 static void ghosts_of_x_and_b_do_not_matter(void **state) {
   (void)state;
   solve_case c = {.dim = 3, .n = {10, 9, 8}, .walls = "iop", .sigma = 50, .side = SIDE_MIXED};
@@ -294,6 +322,7 @@ int main(void) {
       cmocka_unit_test(too_few_iterations_are_reported),
       cmocka_unit_test(an_impossible_tolerance_ends),
       cmocka_unit_test(a_good_guess_needs_no_work),
+      cmocka_unit_test(an_axis_of_one_cell_does_not_go_around),
       cmocka_unit_test(ghosts_of_x_and_b_do_not_matter),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
