@@ -7,7 +7,7 @@ RUN is a run's folder written with output.formats: [vtkhdf]. Shown is what it ho
 named): fields_000012.vtkhdf as a coloured plane (2D) or a volume (3D), mesh_000012.vtkhdf as a surface,
 particles_000012.vtkhdf (and particles_SET_...) as points. --state keeps the scene for going on in the window.
 
-Where ParaView was built to draw on a display only, as Debian's is, one is lent by: xvfb-run -a pvpython ...
+Where ParaView was built to draw on a display only, as Debian's is, one is lent by: xvfb-run -a -s -noreset pvpython ...
 
 ParaView opens these files itself from 5.12 on, also in its window. Versions before that (Debian 12 has 5.11) know
 neither values of cells nor points and surfaces in them: here they are read with h5py, and --state is refused.

@@ -47,7 +47,9 @@ def grey_levels(path):
 
 
 def shown(command, picture, expected):
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    # The Python in them takes its modules from where the first python3 of PATH has them: be it that of the system.
+    paths = {**os.environ, "PATH": "/usr/bin" + os.pathsep + os.environ.get("PATH", "")}
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=paths)
     if done.returncode != 0 or not os.path.exists(picture):
         sys.exit(f"{' '.join(command)}: exit code {done.returncode}\n{done.stdout[-4000:]}")
     for word in expected:
@@ -71,7 +73,8 @@ def main():
         if lent is None:
             print("there is no display, nor xvfb-run to lend one")
             sys.exit(77)
-        command = [lent, "-a", *command]
+        # A server begins anew when its last client leaves, and who comes just then is sent away: ParaView looks twice.
+        command = [lent, "-a", "-s", "-screen 0 640x480x24 -noreset", *command]
     scratch = os.path.join(folder, "recipes-" + viewer)
     shutil.rmtree(scratch, ignore_errors=True)
     os.makedirs(scratch)
