@@ -13,6 +13,9 @@
 
 enum { BLOCK = 2 * CF_SEGMENT_STEP, BITS = 64 };
 
+/* Elements of a half that a plain segment has at least, where the row has as many. */
+enum { PLAIN_LEAST = 4 * CF_SEGMENT_STEP };
+
 /* While segments are found. */
 typedef struct finding {
   cf_segments *g;
@@ -126,6 +129,22 @@ static void trim(const finding *f, const int j, const int k, cf_segment *q) {
   while (kind[q->high - 1] != CF_CELL_INSIDE) --q->high;
 }
 
+/* Short plain segments beside others are not worth a kernel of their own: they become edge segments, joined with those next to
+ * them. */
+static void absorb(cf_segments *g, const ptrdiff_t begun, const int width) {
+  ptrdiff_t kept = begun;
+  for (ptrdiff_t v = begun; v < g->count; ++v) {
+    cf_segment q = g->segment[v];
+    if (q.table < 0 && q.to - q.from < CF_MIN(PLAIN_LEAST, width)) q.table = 0;
+    cf_segment *before = kept > begun ? &g->segment[kept - 1] : NULL;
+    if (before != NULL && before->to == q.from && before->table == q.table)
+      before->to = q.to;
+    else
+      g->segment[kept++] = q;
+  }
+  g->count = kept;
+}
+
 static cf_status make_row(const finding *f, const int j, const int k) {
   cf_segments *g = f->g;
   const ptrdiff_t row = cf_segments_row(f->s, j, k), begun = g->count;
@@ -145,6 +164,7 @@ static cf_status make_row(const finding *f, const int j, const int k) {
           (cf_segment){.from = from, .to = from + CF_SEGMENT_STEP, .table = is_plain ? -1 : 0};
     }
   }
+  absorb(g, begun, f->s->width);
   g->number[row] = g->rows;
   g->rows += g->count > begun;
   for (ptrdiff_t v = begun; v < g->count; ++v) {

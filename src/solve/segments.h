@@ -18,7 +18,7 @@
 #include "grid/region.h"
 #include "solve/split.h"
 
-/* Elements of a half that an edge segment has, and the least that a plain one has. */
+/* Elements of a half that segments are made of. */
 #define CF_SEGMENT_STEP CF_SPLIT_LANES
 
 /* What cf_segments.faces holds of a cell: bit 2 a + side: the face is open; and: */

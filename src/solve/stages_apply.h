@@ -110,6 +110,21 @@ CF_KERNEL double cf_squares(const int n, const float *even, const float *odd) {
   return cf_sum_sixteen(&sum);
 }
 
+/* x += gain e + lift, the halves of e woven together. */
+CF_KERNEL void cf_add_woven(const int n, const double gain, const double lift, const float *even,
+                            const float *odd, cf_real *x) {
+  int i = 0;
+  for (; i + 2 * CF_SUM_LANES <= n; i += 2 * CF_SUM_LANES) {
+    const cf_eight a = CF_EIGHT_OF_FLOATS(even + i / 2), b = CF_EIGHT_OF_FLOATS(odd + i / 2);
+    const cf_eight low = CF_EIGHT_WOVEN_LOW(a, b), high = CF_EIGHT_WOVEN_HIGH(a, b);
+    cf_real *here = x + i, *beyond = here + CF_SUM_LANES;
+    CF_EIGHT_INTO(here, CF_EIGHT_OF(here) + (gain * low + lift));
+    CF_EIGHT_INTO(beyond, CF_EIGHT_OF(beyond) + (gain * high + lift));
+  }
+  for (; i < n; ++i)
+    x[i] = (cf_real)((double)x[i] + (gain * (double)(i % 2 == 0 ? even : odd)[i / 2] + lift));
+}
+
 CF_KERNEL void cf_fetch_x(const cf_pass *p, const cf_strip *t, const int j) {
   const cf_real *x = p->x + cf_box_at(&p->at->plain->box, 2 * t->from, t->next_j + j - t->j, t->next_k);
   for (int i = 0; i < 2 * (t->to - t->from); i += CF_LANES) __builtin_prefetch(x + i, 1);

@@ -35,21 +35,6 @@ void cf_stage_last(const cf_split *s, const cf_strip *t, const float omega) {
 
 /* --- taking the correction ---------------------------------------------------------------------------- */
 
-/* x += gain e + lift, the halves of e woven together. */
-CF_KERNEL void add(const int n, const double gain, const double lift, const float *even, const float *odd,
-                   cf_real *x) {
-  int i = 0;
-  for (; i + 2 * CF_SUM_LANES <= n; i += 2 * CF_SUM_LANES) {
-    const cf_eight a = CF_EIGHT_OF_FLOATS(even + i / 2), b = CF_EIGHT_OF_FLOATS(odd + i / 2);
-    const cf_eight low = CF_EIGHT_WOVEN_LOW(a, b), high = CF_EIGHT_WOVEN_HIGH(a, b);
-    cf_real *here = x + i, *beyond = here + CF_SUM_LANES;
-    CF_EIGHT_INTO(here, CF_EIGHT_OF(here) + (gain * low + lift));
-    CF_EIGHT_INTO(beyond, CF_EIGHT_OF(beyond) + (gain * high + lift));
-  }
-  for (; i < n; ++i)
-    x[i] = (cf_real)((double)x[i] + (gain * (double)(i % 2 == 0 ? even : odd)[i / 2] + lift));
-}
-
 CF_KERNEL void update_rows(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
   const cf_split *s = p->at;
   const int n = cf_natural_count(s, t);
@@ -58,7 +43,7 @@ CF_KERNEL void update_rows(const int dim, const cf_pass *p, const cf_strip *t, c
     const ptrdiff_t at = j * s->row + t->k * s->plane + t->from;
     if (t->next_k >= 0) cf_fetch_x(p, t, j);
     cf_real *x = p->x + cf_box_at(&s->plain->box, 2 * t->from, j, t->k);
-    add(n, p->gain, p->lift, s->e + at, s->e + at + s->odd, x);
+    cf_add_woven(n, p->gain, p->lift, s->e + at, s->e + at + s->odd, x);
     if (s->odd_seam) {
       cf_first_half(s, &red, t, omega);
     } else {

@@ -8,6 +8,7 @@
  *
  * with w_a = 1/4 on plain segments and from a table on edge segments.
  */
+#include <stdint.h>
 #include <string.h>
 
 #include "solve/coupled.h"
@@ -145,18 +146,20 @@ CF_KERNEL const unsigned char *faces_of(const cf_segments *g, const piece *q, un
 }
 
 /* The sum of f and of its squares where a cell is inside; faces NULL: everywhere. */
-CF_KERNEL void add_inside(const int n, const cf_real *f, const unsigned char *faces, double *line,
+CF_KERNEL void add_inside(const int n, const cf_real *f, const unsigned char *faces, cf_real *line,
                           double *sum, double *squares) {
-  const int end = (n + CF_SUM_LANES - 1) / CF_SUM_LANES * CF_SUM_LANES;
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) line[i] = faces == NULL || faces[i] & CF_FACES_INSIDE ? (double)f[i] : 0;
-  for (int i = n; i < end; ++i) line[i] = 0;
-  cf_eight all = {0};
-  for (int i = 0; i < end; i += CF_SUM_LANES) all += CF_EIGHT_OF_DOUBLES(line + i);
-  double lane[CF_SUM_LANES];
-  memcpy(lane, &all, sizeof lane);
-  *sum += cf_sum_lanes(lane);
-  *squares += cf_square_sum(end, line);
+  double own, of_squares;
+  if (faces != NULL) {
+    CF_ROW_LOOP
+    for (int i = 0; i < n; ++i) {
+      const cf_real here = f[i];
+      line[i] = faces[i] & CF_FACES_INSIDE ? here : 0;
+    }
+    f = line;
+  }
+  cf_sum_row(n, f, &own, &of_squares);
+  *sum += own;
+  *squares += of_squares;
 }
 
 /* x += gain e on the cells of the piece from its first to its last inside. */
@@ -165,6 +168,10 @@ CF_KERNEL void add(const cf_pass *p, const piece *q, const float *even, const fl
   const int high = CF_MIN(2 * q->strip.to, q->segment->high);
   const double gain = p->gain;
   cf_real *x = p->x + cf_box_at(&p->at->plain->box, low, q->strip.j, q->strip.k);
+  if (low == from && high - low == cf_natural_count(p->at, &q->strip)) {
+    cf_add_woven(high - low, gain, 0, even, odd, x);
+    return;
+  }
   CF_ROW_LOOP
   for (int m = 0; m < q->strip.to - q->strip.from; ++m) {
     line[2 * m] = even[m];
@@ -186,7 +193,7 @@ CF_KERNEL void lift(const cf_pass *p, const piece *q, const ptrdiff_t room, doub
     for (int i = 0; i < n; ++i)
       x[i] = faces == NULL || faces[i] & CF_FACES_INSIDE ? (cf_real)((double)x[i] + by) : x[i];
   }
-  if (p->sums_of_x) add_inside(n, x, faces, line, sum, squares);
+  if (p->sums_of_x) add_inside(n, x, faces, (cf_real *)line, sum, squares);
 }
 
 CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
@@ -229,20 +236,43 @@ CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const 
 
 /* --- FORM --------------------------------------------------------------------------------------------- */
 
-CF_KERNEL void form_edge(const int dim, const int n, const cf_forming *of, const double coupling,
+/* Eight cells' faces, a number each. */
+typedef int64_t eight_faces __attribute__((vector_size(CF_SUM_LANES * sizeof(int64_t))));
+typedef unsigned char eight_bytes __attribute__((vector_size(CF_SUM_LANES), aligned(1), may_alias));
+
+#define EIGHT_OF_BYTES(p) __builtin_convertvector(*(const eight_bytes *)(p), eight_faces)
+
+/* The values of those cells that have this bit, 0 for the others, whatever theirs are. */
+#define WHERE(faces, bit, value) ((cf_eight)((eight_faces)(value) & (((faces) & (bit)) != 0)))
+
+CF_KERNEL void form_eight_at_edge(const int dim, const cf_forming *f, const double coupling, const int i,
+                                  const unsigned char *faces, const unsigned char *held) {
+  const cf_real *x = f->x + i;
+  const eight_faces open = EIGHT_OF_BYTES(faces + i);
+  const cf_eight c = CF_EIGHT_OF(x), known = __builtin_convertvector(EIGHT_OF_BYTES(held + i), cf_eight);
+  cf_eight sum = WHERE(open, 1, c - CF_EIGHT_OF(x - 1)) - WHERE(open, 2, CF_EIGHT_OF(x + 1) - c);
+  sum += WHERE(open, 4, c - CF_EIGHT_OF(x - f->y)) - WHERE(open, 8, CF_EIGHT_OF(x + f->y) - c);
+  if (dim == 3)
+    sum += WHERE(open, 16, c - CF_EIGHT_OF(x - f->z)) - WHERE(open, 32, CF_EIGHT_OF(x + f->z) - c);
+  const cf_eight Ax = f->alpha * c + coupling * (sum + known * c);
+  *(cf_eight_doubles *)(f->residual + i) = WHERE(open, CF_FACES_INSIDE, CF_EIGHT_OF(f->b + i) - Ax);
+}
+
+CF_KERNEL double form_one_at_edge(const int dim, const cf_forming *f, const double coupling, const int i,
+                                  const int open, const int held) {
+  const cf_real *x = f->x + i;
+  const double c = (double)x[0];
+  double sum = (open & 1 ? c - (double)x[-1] : 0) - (open & 2 ? (double)x[1] - c : 0);
+  sum += (open & 4 ? c - (double)x[-f->y] : 0) - (open & 8 ? (double)x[f->y] - c : 0);
+  if (dim == 3) sum += (open & 16 ? c - (double)x[-f->z] : 0) - (open & 32 ? (double)x[f->z] - c : 0);
+  return open & CF_FACES_INSIDE ? (double)f->b[i] - (f->alpha * c + coupling * (sum + (double)held * c)) : 0;
+}
+
+CF_KERNEL void form_edge(const int dim, const int n, const cf_forming *f, const double coupling,
                          const unsigned char *faces, const unsigned char *held) {
-  const cf_forming f = *of;
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) {
-    const int open = faces[i];
-    const double c = (double)f.x[i];
-    double sum = (open & 1 ? c - (double)f.x[i - 1] : 0) - (open & 2 ? (double)f.x[i + 1] - c : 0);
-    sum += (open & 4 ? c - (double)f.x[i - f.y] : 0) - (open & 8 ? (double)f.x[i + f.y] - c : 0);
-    if (dim == 3)
-      sum += (open & 16 ? c - (double)f.x[i - f.z] : 0) - (open & 32 ? (double)f.x[i + f.z] - c : 0);
-    const double Ax = f.alpha * c + coupling * (sum + (double)held[i] * c);
-    f.residual[i] = open & CF_FACES_INSIDE ? (double)f.b[i] - Ax : 0;
-  }
+  int i = 0;
+  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES) form_eight_at_edge(dim, f, coupling, i, faces, held);
+  for (; i < n; ++i) f->residual[i] = form_one_at_edge(dim, f, coupling, i, faces[i], held[i]);
 }
 
 CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
@@ -270,8 +300,8 @@ CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
       }
       for (int i = n; i < 2 * pairs; ++i) residual[i] = 0;
       rr += cf_square_sum(2 * pairs, residual);
-      add_inside(n, f.b, open, line, &b, &bb);
-      add_inside(n, f.x, open, line, &x, &xx);
+      add_inside(n, f.b, open, (cf_real *)line, &b, &bb);
+      add_inside(n, f.x, open, (cf_real *)line, &x, &xx);
       cf_split_scaled(pairs, 1 / p->scale, residual, s->r + to, s->r + to + s->odd);
       any = 1;
     }
