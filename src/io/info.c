@@ -8,6 +8,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "grid/sweep.h"
@@ -352,12 +353,25 @@ static cf_status find_latest(search *s) {
   return CF_OK;
 }
 
+/* Where there is nothing of a run. */
+static cf_status refuse(const char *path) {
+  int64_t *steps;
+  cf_path scene;
+  int checkpoints;
+  CF_TRY(cf_path_make(&scene, "%s/run.yaml", path));
+  CF_TRY(cf_folder_numbers(path, "checkpoint", "h5", &checkpoints, &steps));
+  cf_free(steps);
+  if (checkpoints > 0 || access(scene.text, F_OK) == 0) return CF_OK;
+  return cf_fail(CF_BAD_FILE, "%s: is not the folder of a run: it has no run.yaml, frames or checkpoints",
+                 path);
+}
+
 /* Frames, checkpoints, and what the last frame's files hold: fields, surface, particles. */
 static cf_status say_folder(cf_report *r, const char *path) {
   search s = {.latest = -1, .folder = path};
   int frames = 0;
   CF_TRY(find_latest(&s));
-  if (s.files > 0) CF_TRY(count_frames(&s, &frames));
+  CF_TRY(s.files > 0 ? count_frames(&s, &frames) : refuse(path));
   CF_TRY(cf_report_say(r, "%s: the folder of a run\n  frames       %d\n", path, frames));
   CF_TRY(say_checkpoints(r, path));
   for (int i = 0; i < s.files; ++i) CF_TRY(say_file(r, s.file[i].text));

@@ -18,7 +18,8 @@
 #define DT_SUSPICIOUS 2.0
 #define GROWN         (sizeof(cf_real) == sizeof(double) ? 1e30 : 1e12)
 
-/* What is wrong: how, where, and the largest value that is still finite there (NaN: there is none). */
+/* What is wrong: how, where, and the largest value that is still finite there (NaN: there is none; -1: it is a number
+ * by itself). */
 typedef struct finding {
   char what[2 * CF_NAME_MAX + 16], place[320];
   double largest;
@@ -42,12 +43,15 @@ static void cause_text(const cf_sim *sim, const double largest, char *text, cons
   else if (grown)
     snprintf(text, size, "values had grown to %.2g: try %s, or look for a rate that grows with the field",
              largest, chosen ? "a smaller time.dt" : "a smaller time.cfl");
-  else
-    snprintf(text, size,
-             "it came at once, other values are at most %.3g: look for an expression (source, wall, "
-             "velocity, k) that "
-             "divides by 0 or takes a root of a negative number there and then",
-             largest);
+  else {
+    char others[64] = "";
+    if (largest >= 0) snprintf(others, sizeof others, ", other values are at most %.3g", largest);
+    snprintf(
+        text, size,
+        "it came at once%s: look for an expression (source, wall, velocity, k) that divides by 0 or takes "
+        "a root of a negative number there and then",
+        others);
+  }
 }
 
 static cf_status fail(const cf_sim *sim, const finding *f) {
@@ -130,7 +134,7 @@ static cf_status check_particles(const cf_sim *sim, const cf_particles *set) {
 }
 
 static cf_status check_numbers(const cf_sim *sim, const cf_entry *e) {
-  finding f = {.largest = 0};
+  finding f = {.largest = -1};
   for (int c = 0; c < e->components; ++c) {
     if (isfinite(e->number[c])) continue;
     snprintf(f.what, sizeof f.what, "%s (number %d of %d)", e->name, c + 1, e->components);

@@ -313,6 +313,8 @@ class Pages(Case):
 
     def test_info_refuses_what_is_not_ours(self):
         self.refuses("info", "nowhere", says="nowhere", code=1)
+        (self.folder / "empty").mkdir()
+        self.refuses("info", "empty", says="empty: is not the folder of a run", code=1)
         self.refuses("info", self.scene(), says="ring.yaml", code=1)
 
     def test_a_full_disk_is_a_failure(self):
