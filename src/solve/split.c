@@ -27,7 +27,8 @@ static void shape(cf_split *s, const cf_level *plain) {
     s->odd_seam = s->odd_seam || (periodic && s->n[a] % 2 == 1);
   }
   const cf_axis *x = &plain->axis[0];
-  for (int side = 0; side < 2; ++side) s->image[side] = x->periodic ? 0 : x->held[side] ? -1 : 1;
+  for (int side = 0; side < 2; ++side) /* a single cell is its own neighbour across a seam: as good as a wall */
+    s->image[side] = x->periodic && x->n > 1 ? 0 : x->held[side] ? -1 : 1;
 }
 
 /* Weights along x in the layout of rows. Even cell 2m is interpolated from coarse cells m and m-1, odd cell 2m+1 from m
