@@ -73,7 +73,7 @@ static void unite_run(const cf_pockets *q, const cf_coupled *l, const cf_run *ru
 }
 
 /* The parts whose diagonal is made of couplings alone become pockets; united: from a label to its pocket or -1. */
-static cf_status number_pockets(cf_pockets *q, const cf_coupled *l) {
+static cf_status number_pockets(cf_pockets *q, const cf_coupled *l, const bool loose) {
   bool *fixed;
   CF_TRY(CF_NEW(&fixed, q->labels));
   for (ptrdiff_t v = 0; v < l->rows; ++v)
@@ -81,7 +81,7 @@ static cf_status number_pockets(cf_pockets *q, const cf_coupled *l) {
       CF_TILE_RUNS (l, v, run)
         for (int i = run->low; i < run->high; ++i) {
           const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
-          if (l->free[p] + l->held[p] > 0) fixed[root_of(q->united, q->label[p])] = true;
+          if ((loose ? 0 : l->free[p]) + l->held[p] > 0) fixed[root_of(q->united, q->label[p])] = true;
         }
   q->count = 0;
   for (ptrdiff_t v = 0; v < q->labels; ++v) q->united[v] = root_of(q->united, (int32_t)v);
@@ -104,9 +104,8 @@ static cf_status number_pockets(cf_pockets *q, const cf_coupled *l) {
   return CF_NEW(&q->cells, q->count);
 }
 
-cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, const bool fixed) {
+cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, const bool loose) {
   q->count = 0;
-  if (fixed) return CF_OK;
   if (q->label == NULL) {
     void *pages;
     CF_TRY(cf_pages_reserve(&pages, (size_t)l->box.size * sizeof *q->label, l->tiles == NULL));
@@ -127,7 +126,7 @@ cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, const bool fixed) 
   for (ptrdiff_t v = 0; v < l->rows; ++v)
     CF_TILE_ROWS (l, v, j, k)
       CF_TILE_RUNS (l, v, run) unite_run(q, l, run, (int[]){0, j, k});
-  CF_TRY(number_pockets(q, l));
+  CF_TRY(number_pockets(q, l, loose));
   ptrdiff_t fixed_cells = 0;
   for (ptrdiff_t v = 0; v < l->rows; ++v)
     CF_TILE_ROWS (l, v, j, k)
@@ -251,4 +250,32 @@ void cf_pockets_restore_means(const cf_pockets *q, const cf_coupled *l, const cf
   if (q->count == 0) return;
   sum_up(q, l, f);
   shift(q, l, true, f);
+}
+
+void cf_pockets_ask_means(const cf_pockets *q, const cf_coupled *l, const double alpha, const cf_cell b) {
+  if (q->count == 0) return;
+  sum_up(q, l, b);
+  for (int v = 0; v < q->count; ++v) q->mean[v] = q->sum[v] / q->cells[v] / alpha;
+}
+
+void cf_pockets_level_out(const cf_pockets *q, const cf_coupled *l, float *e) {
+  for (int v = 0; v < q->count; ++v) q->sum[v] = 0;
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run) {
+        const ptrdiff_t row = cf_box_at(&l->box, 0, j, k);
+        for (ptrdiff_t p = row + run->low; p < row + run->high; ++p) {
+          const int32_t pocket = q->united[q->label[p]];
+          if (pocket >= 0) q->sum[pocket] += (double)e[p];
+        }
+      }
+  CF_PARALLEL_COUPLED (l, v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run) {
+        const ptrdiff_t row = cf_box_at(&l->box, 0, j, k);
+        for (ptrdiff_t p = row + run->low; p < row + run->high; ++p) {
+          const int32_t pocket = q->united[q->label[p]];
+          if (pocket >= 0) e[p] = (float)((double)e[p] - q->sum[pocket] / q->cells[pocket]);
+        }
+      }
 }

@@ -22,8 +22,8 @@ typedef struct cf_pockets {
   int64_t followed; /* the update of the tiles that the labels are right for */
 } cf_pockets;
 
-/* `fixed` : alpha is nowhere 0, there is nothing to find. CF_NO_MEMORY. */
-cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, bool fixed);
+/* The parts that nothing fixes; `loose`: those as well that alpha alone fixes. CF_NO_MEMORY. */
+cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, bool loose);
 void cf_pockets_clear(cf_pockets *q, const cf_coupled *l); /* a zeroed one is fine */
 
 /* Subtracts from f its mean over every pocket. */
@@ -32,6 +32,11 @@ void cf_pockets_remove_means(const cf_pockets *q, const cf_coupled *l, cf_cell f
 /* Keeps the means of f, and shifts f back to the means kept. */
 void cf_pockets_keep_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);
 void cf_pockets_restore_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);
+
+/* With loose pockets: the means that alpha and b ask for, to be restored; and a correction without means. The cycle makes constants
+ * of small pockets far too large where alpha is small, for coarse cells that hold a part of one hold others as well. */
+void cf_pockets_ask_means(const cf_pockets *q, const cf_coupled *l, double alpha, cf_cell b);
+void cf_pockets_level_out(const cf_pockets *q, const cf_coupled *l, float *e);
 
 /* f += amount on the single pocket that there is. */
 void cf_pockets_lift(const cf_coupled *l, double amount, cf_cell f);

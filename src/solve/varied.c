@@ -33,10 +33,12 @@ static void release(cf_varied *v) {
   const cf_box *b = &v->A->grid.box;
   if (v->levels > 0) {
     cf_pockets_clear(&v->pockets, &v->level[0]);
+    cf_pockets_clear(&v->loose, &v->level[0]);
     cf_renewal_clear(&v->renewal, &v->level[0]);
   }
   for (int l = 0; l < v->levels; ++l) cf_coupled_destroy(&v->level[l]);
   v->levels = 0;
+  v->loose_stamp = 0;
   cf_band_destroy(&v->band);
   cf_cell_destroy(&v->own_alpha, b);
   cf_face_destroy(&v->own_beta, b);
@@ -262,7 +264,8 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
   else if (are_numbers_in_region(c))
     CF_TRY(cf_renewal_take(&v->renewal, &v->level[0], c->region));
   CF_TRY(make_levels(v, c, all));
-  CF_TRY(cf_pockets_find(&v->pockets, &v->level[0], least > 0));
+  v->pockets.count = 0;
+  if (!(least > 0)) CF_TRY(cf_pockets_find(&v->pockets, &v->level[0], false));
   v->stamp = are_numbers_in_region(c) ? c->region->stamp : 0;
   return CF_OK;
 }

@@ -12,7 +12,8 @@
  *
  *     |b - A x| <= eps |D x|,     D the diagonal, eps the precision of the state,
  *
- * below which a residual says nothing about x. A start that makes things worse is taken back.
+ * below which a residual says nothing about x. Pockets that little alpha fixes are the slowest part of all: their means follow from
+ * those of b, and corrections are kept free of them (deflation; Nicolaides 1987). A start that makes things worse is taken back.
  */
 #include <math.h>
 
@@ -31,6 +32,8 @@
 /* A residual that is round-off passes for convergence up to the root of this (5e-7; in single precision 1e-2), not
  * beyond. */
 #define ROUNDING_PASSES (1024 * CF_REAL_EPSILON)
+/* Below this share of alpha in the diagonal a mean of b is round-off, and tells nothing. */
+#define MEAN_LOST 1e-8
 /* What is left may be so many times the floor (in squares) where rounding is the reason. */
 #define NEAR_ROUNDING 16
 
@@ -44,6 +47,9 @@ static double scale_for(const cf_varied *v, const double rr) {
   return ldexp(1, CF_MAX(-1000, CF_MIN(1000, -exponent)));
 }
 
+/* Where all cells hang together their mean is no trouble. */
+static bool has_loose(const cf_varied *v) { return v->loose.count > 0 && !v->loose.single; }
+
 /* Conjugate gradients from the residual formed. */
 static void iterate(const cf_varied *v, double rr, const double enough, const int limit, const cf_cell x,
                     int *iterations) {
@@ -53,6 +59,7 @@ static void iterate(const cf_varied *v, double rr, const double enough, const in
   cf_varied_convert(v, scale);
   for (int it = 0; rr > enough && *iterations < most; ++it) {
     cf_varied_cycle(v, 0);
+    if (has_loose(v)) cf_pockets_level_out(&v->loose, &v->level[0], v->level[0].e);
     const cf_varied_sums z = cf_varied_test_correction(v);
     cf_varied_turn(v, it == 0 ? 0 : -a * z.first / zr_old);
     const cf_varied_sums p = cf_varied_probe(v);
@@ -83,6 +90,27 @@ cf_status cf_varied_judge(const cf_varied *v, const cf_varied_sums *s, const cf_
   return CF_OK;
 }
 
+/* Pockets that only alpha fixes, where it is a number: b tells their means, and conjugate gradients need not find them. */
+static cf_status find_loose(cf_varied *v) {
+  const cf_coupled *l = &v->level[0];
+  const bool numbers = v->stamp != 0 && v->scale * v->alpha_number > MEAN_LOST;
+  if (!numbers) {
+    v->loose.count = 0;
+    v->loose_stamp = 0;
+    return CF_OK;
+  }
+  if (v->loose_stamp == v->stamp) return CF_OK;
+  v->loose_stamp = 0;
+  CF_TRY(cf_pockets_find(&v->loose, l, true));
+  v->loose_stamp = v->stamp;
+  return CF_OK;
+}
+
+static void restore_means(const cf_varied *v, const cf_cell x) {
+  cf_pockets_restore_means(&v->pockets, &v->level[0], x);
+  if (has_loose(v)) cf_pockets_restore_means(&v->loose, &v->level[0], x);
+}
+
 /* Starts until the residual's square is `enough` or nothing is gained; *s: what has been formed of x. */
 static void approach(cf_varied *v, const cf_cell b, const double enough, const int limit, const cf_cell x,
                      cf_varied_sums *s, int *iterations) {
@@ -94,7 +122,7 @@ static void approach(cf_varied *v, const cf_cell b, const double enough, const i
     if (s->first <= target) return;
     cf_varied_copy(v, x, v->best);
     iterate(v, s->first, CF_MAX(target, most), limit, x, iterations);
-    cf_pockets_restore_means(&v->pockets, &v->level[0], x);
+    restore_means(v, x);
     *s = cf_varied_form(v, x, b);
     const bool stalled = !(s->first <= 0.25 * before.first);
     if (!(s->first < before.first)) {
@@ -112,6 +140,11 @@ cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options 
   const cf_coupled *l = &v->level[0];
   cf_pockets_remove_means(&v->pockets, l, b);
   cf_pockets_keep_means(&v->pockets, l, x);
+  CF_TRY(find_loose(v));
+  if (has_loose(v)) {
+    cf_pockets_ask_means(&v->loose, l, v->alpha_number, b);
+    cf_pockets_restore_means(&v->loose, l, x);
+  }
   report->pockets = v->pockets.count;
   cf_varied_sums s = cf_varied_form(v, x, b);
   CF_TRY(cf_varied_judge(v, &s, o, report));

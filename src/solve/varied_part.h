@@ -25,6 +25,8 @@ struct cf_varied {
   cf_band_sweeps band_sweeps; /* near walls, before and after the coarse correction */
   cf_band band;
   cf_pockets pockets;
+  cf_pockets loose;     /* pockets that alpha alone fixes, for conjugate gradients: */
+  uint64_t loose_stamp; /* of the region that they were found in */
 
   /* The operator in the precision of the state: alpha and what faces with known values add (a field or, where `at` is
    * NULL, a number), beta on faces (closed ones 0). Fields of the caller or our own. */
