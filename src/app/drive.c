@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "app/command.h"
+#include "io/folder.h"
 
 enum { LINE = 512 };
 
@@ -26,23 +27,13 @@ cf_session_options cf_drive_options(const cf_arguments *a, cf_teller *teller) {
   };
 }
 
-/* "go on with: cattaneo resume 'my run'", ready to be pasted into a shell. */
-static void advice_text(const char *folder, char *text, const size_t size) {
-  const bool plain = folder[strcspn(folder, " \t\n'\"\\$&|;<>()*?[]{}#~`!")] == '\0';
-  size_t n = (size_t)snprintf(text, size, "go on with: " CF_PROGRAM " resume %s", plain ? folder : "'");
-  if (plain) return;
-  for (; *folder != '\0' && n + 6 < size; ++folder)
-    n += (size_t)snprintf(text + n, size - n, *folder == '\'' ? "'\\''" : "%c", *folder);
-  snprintf(text + n, size - n, "'");
-}
-
 /* How far a run got. */
 static void state_text(const cf_sim *sim, char *text, const size_t size) {
   snprintf(text, size, "step %lld, t = %.6g s", (long long)sim->step, sim->time);
 }
 
 static void tell_end(cf_teller *t, const cf_session *s) {
-  char line[2 * LINE], state[96], advice[LINE];
+  char line[2 * LINE], state[96], word[LINE];
   const cf_sim *sim = cf_session_sim(s);
   const char *folder = cf_session_folder(s);
   const bool done = cf_sim_finished(sim);
@@ -52,8 +43,8 @@ static void tell_end(cf_teller *t, const cf_session *s) {
   } else if (done) {
     snprintf(line, sizeof line, "done: %s; frames 0 to %lld in %.400s", state, (long long)sim->frame, folder);
   } else {
-    advice_text(folder, advice, sizeof advice);
-    snprintf(line, sizeof line, "paused at %s; %s", state, advice);
+    cf_path_quote(folder, word, sizeof word);
+    snprintf(line, sizeof line, "paused at %s; go on with: " CF_PROGRAM " resume %s", state, word);
   }
   cf_teller_last(t, done ? "done" : "paused", line);
 }

@@ -26,6 +26,15 @@ cf_status cf_path_make(cf_path *p, const char *format, ...) {
   return CF_OK;
 }
 
+void cf_path_quote(const char *path, char *text, const size_t size) {
+  const bool plain = path[strcspn(path, " \t\n'\"\\$&|;<>()*?[]{}#~`!")] == '\0';
+  size_t n = (size_t)snprintf(text, size, "%s", plain ? path : "'");
+  if (plain) return;
+  for (; *path != '\0' && n + 6 < size; ++path)
+    n += (size_t)snprintf(text + n, size - n, *path == '\'' ? "'\\''" : "%c", *path);
+  snprintf(text + n, size - n, "'");
+}
+
 /* The folder part of a path, "." if it has none; *name is the rest. */
 static cf_status split(const char *path, cf_path *folder, const char **name) {
   const char *slash = strrchr(path, '/');

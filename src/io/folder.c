@@ -247,16 +247,17 @@ static cf_status open_log(cf_folder *f) {
 static cf_status refuse_or_clear(const cf_folder *f, const bool force) {
   const char *path = f->path.text;
   census found = {0};
-  char holds[256];
+  char holds[256], word[CF_PATH_MAX];
   CF_TRY(cf_folder_each(path, visit_census, &found));
   census_sentence(&found, holds, sizeof holds);
   if (holds[0] == '\0') return CF_OK;
+  cf_path_quote(path, word, sizeof word);
   if (!force)
     return cf_fail(
         CF_BAD_USAGE,
         "%s: holds a run already (%s): give --force to replace it, -o DIR to write elsewhere, or go on "
         "with `cattaneo resume %s`",
-        path, holds, path);
+        path, holds, word);
   /* run.yaml goes first: whatever interrupts this, no old checkpoint can be taken for one of the new run. */
   CF_TRY(cut_files((cut){.path = path, .run = true}));
   return cut_files((cut){.path = path, .frames = true, .above = -1, .checkpoints = true});

@@ -28,6 +28,9 @@ typedef struct cf_path {
 /* CF_BAD_ARGUMENT: longer than CF_PATH_MAX - 1. */
 cf_status cf_path_make(cf_path *p, const char *format, ...) CF_PRINTF(2, 3);
 
+/* The path as a word that can be pasted into a shell: as it is, or in quotes. */
+void cf_path_quote(const char *path, char *text, size_t size);
+
 /* --- one file, whole or not at all ----------------------------------------------------------------- */
 
 typedef struct cf_draft {

@@ -93,14 +93,15 @@ static cf_status load(cf_session *s, const char *path) {
 
 cf_status cf_session_restore(cf_session *s) {
   cf_checkpoint_found newest;
-  char line[2 * CF_SENTENCE_MAX + 128];
+  char line[2 * CF_SENTENCE_MAX + 128], word[CF_PATH_MAX];
+  cf_path_quote(s->folder.path.text, word, sizeof word);
   CF_TRY(cf_checkpoint_newest(s->folder.path.text, &newest));
   if (!newest.found && newest.passed_over[0] != '\0')
     return cf_fail(CF_BAD_FILE,
                    "%s: none of its checkpoints can be gone on from (%.600s); nothing was changed; to start "
                    "the run anew: "
                    "cattaneo run --force -o %.200s %.200s/run.yaml",
-                   s->folder.path.text, newest.passed_over, s->folder.path.text, s->folder.path.text);
+                   s->folder.path.text, newest.passed_over, word, word);
   if (newest.passed_over[0] != '\0') {
     snprintf(line, sizeof line, "passed over: %s", newest.passed_over);
     cf_session_say(s, CF_LINE_WARNING, line);

@@ -19,7 +19,7 @@ static bool report(const cf_session *s, const bool finished) {
                    .frame = sim->frame,
                    .frames = cf_sim_frames(sim),
                    .time = sim->time,
-                   .end = s->o.until > 0 ? s->o.until : sim->end,
+                   .end = s->o.until > 0 ? fmin(s->o.until, sim->end) : sim->end,
                    .dt = sim->dt,
                    .iterations = sim->report.solve.iterations,
                    .seconds = cf_session_clock() - s->started,
@@ -49,7 +49,7 @@ static void tell_warnings(cf_session *s) {
 
 /* A failure in mid-run names what is left to go on from, and how. */
 static cf_status explain_failure(cf_session *s, const cf_status status) {
-  char why[CF_SENTENCE_MAX], left[CF_PATH_MAX + 64], next[CF_PATH_MAX + 64] = "";
+  char why[CF_SENTENCE_MAX], left[CF_PATH_MAX + 64], next[CF_PATH_MAX + 64] = "", word[CF_PATH_MAX];
   const bool retries = status == CF_NOT_FINITE || status == CF_NOT_CONVERGED;
   snprintf(why, sizeof why, "%s", cf_status_sentence());
   if (s->last_checkpoint >= 0)
@@ -61,8 +61,9 @@ static cf_status explain_failure(cf_session *s, const cf_status status) {
     snprintf(next, sizeof next, "; time.retry makes a run go back by itself and take smaller steps");
   else if (retries && s->scene->time.retry <= s->sim->retries)
     snprintf(next, sizeof next, "; time.retry is used up");
-  else if (status == CF_CANNOT_WRITE || status == CF_NO_MEMORY)
-    snprintf(next, sizeof next, "; when that is mended: cattaneo resume %.300s", s->folder.path.text);
+  cf_path_quote(s->folder.path.text, word, sizeof word);
+  if (status == CF_CANNOT_WRITE || status == CF_NO_MEMORY)
+    snprintf(next, sizeof next, "; when that is mended: cattaneo resume %.300s", word);
   cf_fail(status, "%.640s; %s%s", why, left, next);
   (void)cf_folder_log(&s->folder, "error: %s", cf_status_sentence());
   return status;
@@ -84,11 +85,12 @@ static bool time_is_up(const cf_session *s) {
 }
 
 static cf_status stop(cf_session *s, const char *why) {
-  char line[CF_PATH_MAX + 256];
+  char line[CF_PATH_MAX + 256], word[CF_PATH_MAX];
   const cf_status status = cf_session_write_checkpoint(s, false);
   if (status != CF_OK) return explain_failure(s, status);
+  cf_path_quote(s->folder.path.text, word, sizeof word);
   snprintf(line, sizeof line, "%s at step %lld (t = %g s); go on with: cattaneo resume %s", why,
-           (long long)s->sim->step, s->sim->time, s->folder.path.text);
+           (long long)s->sim->step, s->sim->time, word);
   (void)cf_folder_log(&s->folder, "%s", line);
   return cf_fail(CF_STOPPED, "%s", line);
 }
@@ -114,6 +116,12 @@ static cf_status one_step(cf_session *s) {
 cf_status cf_session_run(cf_session *s) {
   char line[128];
   if (s->was_finished) return CF_OK;
+  if (s->o.until > 0 && reached(s)) {
+    snprintf(line, sizeof line, "nothing to compute: t = %g s is not before the %g s to go to", s->sim->time,
+             s->o.until);
+    cf_session_say(s, CF_LINE_NOTE, line);
+    return CF_OK;
+  }
   while (!reached(s)) {
     const cf_status status = one_step(s);
     if (status != CF_OK) return explain_failure(s, status);

@@ -456,6 +456,23 @@ class Runs(Case):
             if p.name not in ("log.txt", ".lock"):
                 self.assertTrue(p.read_bytes() == (self.folder / "in two" / p.name).read_bytes(), p.name)
 
+    def test_a_time_that_is_past_is_told_and_one_beyond_the_end_is_the_end(self):
+        self.call("run", self.scene(), "-o", "d", "--steps", "7", "--progress", "none")
+        done = self.call("resume", "d", "--until", "0.01")
+        self.assertEqual((done.returncode, done.stdout), (0, "d\n"), done.stderr)
+        self.assertIn("nothing to compute: t = 0.35 s is not before the 0.01 s", done.stderr)
+        self.assertNotIn("steps/s", done.stderr)
+        done = self.call("resume", "d", "--until", "100")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("of 100 s", done.stderr)
+        self.assertIn("t = 1 of 1 s", done.stderr)
+
+    def test_what_is_to_be_typed_can_be_pasted(self):
+        name, folder = self.scene(), "it's my run"
+        for words in (("--steps", "3"), (), ("--force", "--wall-limit", "1 ms")):
+            done = self.call("run", name, "-o", folder, "--progress", "none" if "--force" in words else "plain", *words)
+            self.assertIn("cattaneo resume 'it'\\''s my run'", done.stderr)
+
     def test_resume_of_a_finished_run_says_so(self):
         self.call("run", self.scene(), "-o", "d")
         done = self.call("resume", "d")
