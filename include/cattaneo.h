@@ -359,7 +359,7 @@ typedef struct cf_solve_options {
 typedef struct cf_solve_report {
   int iterations;  /* of conjugate gradients, one V-cycle each */
   int levels;      /* that the cycle went through */
-  double residual; /* |b - A x| / |b| at the end */
+  double residual; /* |b - A x| / |b| at the end, to within 1e-7 of the one at the beginning */
   bool converged;
   int pockets; /* parts of the region whose level nothing fixes: each keeps the mean that its x came with */
   const char *method; /* that did it: "sor", "multigrid", "multigrid-pcg", "line" or "direct" */

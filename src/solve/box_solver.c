@@ -33,9 +33,6 @@
 #define MEAN_LOST 1e10
 /* Extents that a cycle of eight half sweeps is for: Fourier's analysis knows of no walls. */
 #define THIN 16
-/* A residual that is round-off passes for convergence up to the root of this (5e-7; in single precision 1e-2), not
- * beyond. */
-#define ROUNDING_PASSES (1024 * CF_REAL_EPSILON)
 /* Of what the tolerance allows, a mean that is not as it should be may take up so much. */
 #define MEAN_SHARE 0.1
 
@@ -346,7 +343,7 @@ static cf_status run(const cf_box_solver *f, const cf_helmholtz *A, const cf_cel
   if (!*finished && it.overshoots) start_again(f, keeps, mean, x, &it);
   settle_mean(f, A, b, x, o->tolerance, &it);
   report->residual = it.bb > 0 ? sqrt(it.rr / it.bb) : 0;
-  const double rounding = CF_MIN(floor_of(f, &it), ROUNDING_PASSES * it.bb);
+  const double rounding = CF_MIN(floor_of(f, &it), CF_ROUNDING_PASSES * it.bb);
   report->converged = it.bb == 0 || it.rr <= CF_MAX(enough, rounding);
   return CF_OK;
 }

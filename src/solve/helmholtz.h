@@ -17,6 +17,10 @@
 #include "grid/grid.h"
 #include "grid/wall.h"
 
+/* A residual that is round-off passes for convergence up to the root of this (5e-7; in single precision 1e-2), not
+ * beyond. */
+#define CF_ROUNDING_PASSES (1024 * CF_REAL_EPSILON)
+
 /* How equations with the present coefficients are solved: "sor" (half sweeps on one level), "multigrid" (stationary
  * V-cycles), "multigrid-pcg" (conjugate gradients around V-cycles), or by elimination: "line", "direct" (few cells). */
 const char *cf_helmholtz_method(const cf_helmholtz *A);

@@ -29,9 +29,6 @@
 #define PATIENCE 25
 /* One start gains so much at most: then how large x has become, and its rounding, is looked at anew. */
 #define START_GAIN (1024 * CF_REAL_EPSILON)
-/* A residual that is round-off passes for convergence up to the root of this (5e-7; in single precision 1e-2), not
- * beyond. */
-#define ROUNDING_PASSES (1024 * CF_REAL_EPSILON)
 /* Below this share of alpha in the diagonal a mean of b is round-off, and tells nothing. */
 #define MEAN_LOST 1e-8
 /* What is left may be so many times the floor (in squares) where rounding is the reason. */
@@ -84,7 +81,7 @@ cf_status cf_varied_judge(const cf_varied *v, const cf_varied_sums *s, const cf_
                    "the equation to solve holds a value that is not finite (|b| = %g, |b - A x| = %g)",
                    sqrt(s->second), sqrt(s->first));
   const double bb = s->second, enough = o->tolerance * o->tolerance * bb;
-  const double rounding = CF_MIN(NEAR_ROUNDING * floor_of(v, s), ROUNDING_PASSES * bb);
+  const double rounding = CF_MIN(NEAR_ROUNDING * floor_of(v, s), CF_ROUNDING_PASSES * bb);
   report->residual = bb > 0 ? sqrt(s->first / bb) : 0;
   report->converged = bb == 0 || s->first <= CF_MAX(enough, rounding);
   return CF_OK;
