@@ -22,13 +22,12 @@ static void shape(cf_split *s, const cf_level *plain) {
   s->first = CF_SPLIT_LANES + s->row + (s->dim == 3 ? s->plane : 0);
   s->size = s->plane * depth + 2 * CF_SPLIT_LANES;
   for (int a = 0; a < s->dim; ++a) {
-    const bool periodic = plain->axis[a].periodic && s->n[a] > 1;
+    const bool periodic = plain->axis[a].periodic;
     s->has_seam = s->has_seam || periodic;
     s->odd_seam = s->odd_seam || (periodic && s->n[a] % 2 == 1);
   }
   const cf_axis *x = &plain->axis[0];
-  for (int side = 0; side < 2; ++side) /* a single cell is its own neighbour across a seam: as good as a wall */
-    s->image[side] = x->periodic && x->n > 1 ? 0 : x->held[side] ? -1 : 1;
+  for (int side = 0; side < 2; ++side) s->image[side] = x->periodic ? 0 : x->held[side] ? -1 : 1;
 }
 
 /* Weights along x in the layout of rows. Even cell 2m is interpolated from coarse cells m and m-1, odd cell 2m+1 from m
@@ -144,7 +143,7 @@ void cf_split_set(cf_split *s, const double alpha, const double beta, const doub
                   const double omega[4]) {
   s->alpha = (float)(alpha / scale);
   for (int a = 0; a < s->dim; ++a)
-    s->wraps[a] = s->plain->axis[a].periodic && s->n[a] > 1 && !s->odd_seam && s->segments == NULL;
+    s->wraps[a] = s->plain->axis[a].periodic && !s->odd_seam && s->segments == NULL;
   for (int v = 0; v < 4; ++v) s->omega[v] = (float)omega[v];
   for (int a = 0; a < s->dim; ++a)
     for (int i = 0; i < s->n[a]; ++i) {
