@@ -26,7 +26,7 @@
 /* What an axis is made of, in units of the finest cell. Tables have n entries. */
 typedef struct cf_axis {
   int n;
-  bool periodic, held[2];
+  bool periodic, held[2]; /* periodic: and of more than one cell */
   double *width;
   cf_real *lo, *hi;  /* see above, multiplied by beta */
   double *lo1, *hi1; /* the same without beta */

@@ -88,7 +88,7 @@ static void look_at_all(const finding *f) {
 /* Row j of axis a as far as it exists, around the seam where there is one; -1: beyond a wall. */
 static int row_in(const cf_split *s, const int a, const int j) {
   if (j >= 0 && j < s->n[a]) return j;
-  return s->plain->axis[a].periodic && s->n[a] > 1 ? (j + s->n[a]) % s->n[a] : -1;
+  return s->plain->axis[a].periodic ? (j + s->n[a]) % s->n[a] : -1;
 }
 
 /* The plain blocks among those of a word of row (j, k): all inside in the coarse rows to which the row and its

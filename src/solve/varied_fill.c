@@ -45,7 +45,7 @@ static void fill_cell(const filling *f, const int at[3], const ptrdiff_t p) {
     const int n = l->box.n[a];
     const ptrdiff_t s = l->box.stride[a];
     for (int side = 0; side < 2; ++side) {
-      const bool end = at[a] == (side ? n - 1 : 0), wall = end && !(v->A->level[0].axis[a].periodic && n > 1);
+      const bool end = at[a] == (side ? n - 1 : 0), wall = end && !v->A->level[0].axis[a].periodic;
       const ptrdiff_t face = side ? p + s : p;
       const ptrdiff_t other = !end ? (side ? p + s : p - s) : side ? p - (n - 1) * s : p + (n - 1) * s;
       const int next = wall ? -1 : kind_of(v, other);
