@@ -132,9 +132,23 @@ static cf_status list_frames(cf_showing *s) {
   return cf_fail(CF_BAD_FILE, "%s: has no frames to show; output.formats must have vtkhdf in it", s->folder);
 }
 
+/* What has been computed stays as it is. */
+static cf_status check_sets(const cf_arguments *a) {
+  for (int i = 0; i < a->sets; ++i) {
+    const size_t length = strcspn(a->set[i], ".=");
+    if (strncmp(a->set[i], "render", length) == 0 || strncmp(a->set[i], "title", length) == 0) continue;
+    return cf_fail(CF_BAD_USAGE,
+                   "--set %.200s: pictures show what a run has computed; of its scene render and title alone "
+                   "may be set for them",
+                   a->set[i]);
+  }
+  return CF_OK;
+}
+
 cf_status cf_showing_open(cf_showing *s, const char *folder, const cf_arguments *a) {
   cf_path path;
   *s = (cf_showing){.folder = folder};
+  CF_TRY(check_sets(a));
   CF_TRY(cf_path_make(&path, "%s/run.yaml", folder));
   if (access(path.text, R_OK) != 0)
     return cf_fail(CF_BAD_FILE, "%s: is no folder of a run: run.yaml: %s", folder, strerror(errno));

@@ -347,6 +347,14 @@ class Pictures(Case):
         self.assertEqual(wide, 1280)
         self.assertLess(abs(high - wide), 60, "a square plane")
 
+    def test_render_sets_how_it_is_shown_and_nothing_that_was_computed(self):
+        self.run_ring()
+        self.refuses("render", "ring", "--set", "domain.cells=[8, 8]", says="render and title alone")
+        self.refuses("movie", "ring", "--set", "time.end=1", says="render and title alone")
+        self.refuses("render", "ring", "--set", "render.stile=paper", says="did you mean")
+        self.assertEqual(self.call("render", "ring", "--set", "title=Ring", "--set", "render.zoom=2").returncode, 2)
+        self.assertEqual(self.call("render", "ring", "--set", "title=Ring").returncode, 0)
+
     def test_render_takes_frame_size_and_name(self):
         self.run_ring()
         done = self.call("render", "ring", "--frame", "2", "--size", "320x200", "-o", "two.png")
