@@ -111,7 +111,7 @@ static void reconstruct(cf_advect *a, const cf_moved *m) {
 /* The paper's step: back along the path, and linear; or cubic. */
 static void trace(cf_advect *a, const cf_moved *m) {
   const cf_box *b = &a->grid->box;
-  cf_halo halo;
+  cf_halo halo = {0};
   cf_trace t = {.grid = a->grid,
                 .component = m->component,
                 .count = {m->count[0], m->count[1], m->count[2]},

@@ -79,7 +79,7 @@ void cf_diffuse_visit_radiating(const cf_diffuse *d, cf_wall_visit *visit, void 
 }
 
 void cf_diffuse_copy_ghosts(const cf_diffuse *d, const cf_cell f) {
-  cf_halo halo;
+  cf_halo halo = {0};
   for (int a = 0; a < 3; ++a)
     for (int side = 0; side < 2; ++side)
       halo.rule[a][side] = d->walls.walls.kind[a][side] == CF_WALL_PERIODIC ? CF_HALO_WRAP : CF_HALO_COPY;

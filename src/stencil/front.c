@@ -48,7 +48,7 @@ double cf_front_strength(const int dim, const double courant, const double weigh
 }
 
 static cf_halo halo_of(const cf_walls *walls) {
-  cf_halo halo;
+  cf_halo halo = {0};
   for (int a = 0; a < 3; ++a)
     for (int side = 0; side < 2; ++side)
       halo.rule[a][side] = walls->kind[a][side] == CF_WALL_PERIODIC ? CF_HALO_WRAP : CF_HALO_COPY;

@@ -85,7 +85,7 @@ void cf_stretch_close(const cf_grid *g, const cf_walls *walls, const cf_face q) 
 void cf_stretch(const cf_grid *g, const cf_walls *walls, const cf_face u, const double dt, const cf_face from,
                 const cf_face base, const cf_face to) {
   const cf_box *b = &g->box;
-  cf_halo halo;
+  cf_halo halo = {0};
   for (int a = 0; a < 3; ++a)
     for (int side = 0; side < 2; ++side)
       halo.rule[a][side] = walls->kind[a][side] == CF_WALL_PERIODIC ? CF_HALO_WRAP : CF_HALO_COPY;
