@@ -20,7 +20,7 @@ typedef enum cf_halo_rule {
 
 typedef struct cf_halo {
   cf_halo_rule rule[3][2];
-  int threads; /* 0: one */
+  int threads; /* that share a layer of thousands of cells; 0: one */
 } cf_halo;
 
 /* Fills `width` (at most the box's halo) layers around f. component: CF_CENTRES, or the axis on whose faces

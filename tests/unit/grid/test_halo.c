@@ -84,6 +84,28 @@ static void every_ghost_follows_its_rule(void **state) {
   }
 }
 
+/* Layers of more cells than one thread takes alone. */
+static void threads_fill_the_same_ghosts(void **state) {
+  (void)state;
+  cf_box b;
+  OK(cf_box_init(&b, 3, (int[3]){80, 70, 66}, 1));
+  const size_t row = (size_t)(b.n[0] + 2) * sizeof(cf_real);
+  cf_cell f[2];
+  for (int way = 0; way < 2; ++way) {
+    cf_halo h = {
+        .rule = {{CF_HALO_WRAP, CF_HALO_WRAP}, {CF_HALO_COPY, CF_HALO_ZERO}, {CF_HALO_COPY, CF_HALO_COPY}},
+        .threads = way == 0 ? 0 : 3};
+    OK(cf_cell_create(&f[way], &b));
+    for (ptrdiff_t r = 0; r < cf_box_rows(&b); ++r)
+      for (int i = 0; i < b.n[0]; ++i) f[way].at[cf_box_row(&b, r) + i] = (cf_real)(1 + (r * 7 + i) % 1009);
+    cf_halo_fill(&b, &h, 1, CF_CENTRES, f[way].at);
+  }
+  for (int k = -1; k <= b.n[2]; ++k)
+    for (int j = -1; j <= b.n[1]; ++j)
+      assert_memory_equal(f[0].at + cf_box_at(&b, -1, j, k), f[1].at + cf_box_at(&b, -1, j, k), row);
+  for (int way = 0; way < 2; ++way) cf_cell_destroy(&f[way], &b);
+}
+
 static void a_side_left_alone_keeps_its_ghosts(void **state) {
   (void)state;
   cf_box b;
@@ -171,6 +193,7 @@ static void wall_ghosts_put_the_value_on_the_wall(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_ghost_follows_its_rule),
+      cmocka_unit_test(threads_fill_the_same_ghosts),
       cmocka_unit_test(a_side_left_alone_keeps_its_ghosts),
       cmocka_unit_test(width_zero_closes_the_seam_of_faces_only),
       cmocka_unit_test(wall_ghosts_put_the_value_on_the_wall),
