@@ -356,7 +356,8 @@ cf_status cf_box_solver_run(cf_box_solver *f, cf_helmholtz *A, const cf_cell b, 
   report->pockets = pockets->count;
   f->varied->careful = false;
   f->varied->thorough = true;
-  f->varied->band_sweeps = (cf_band_sweeps){f->segments.any_held, 1};
+  /* beside known values the coarse levels are swept once more */
+  f->varied->band_sweeps = (cf_band_sweeps){f->segments.any_held ? 1 : 0, 1};
   if (f->singular)
     return run(f, A, b, o, x, report, finished); /* which looks after a single mean by itself */
   cf_pockets_remove_means(pockets, l, b);
