@@ -15,6 +15,9 @@ static const struct {
 #undef CF_STATUS_ROW
 };
 
+/* A name that is quoted may hold what would steer a terminal. */
+static bool is_control(const char c) { return ((unsigned char)c < ' ' && c != '\n') || c == 0x7f; }
+
 cf_status cf_fail(const cf_status code, const char *format, ...) {
   /* The arguments may contain the sentence of a deeper failure: format aside, then copy. */
   char fresh[CF_SENTENCE_MAX];
@@ -22,6 +25,8 @@ cf_status cf_fail(const cf_status code, const char *format, ...) {
   va_start(values, format);
   vsnprintf(fresh, sizeof fresh, format, values);
   va_end(values);
+  for (char *c = fresh; *c != '\0'; ++c)
+    if (is_control(*c)) *c = '?';
   snprintf(sentence, sizeof sentence, "%s", fresh);
   return code;
 }

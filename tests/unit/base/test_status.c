@@ -44,6 +44,14 @@ static void a_long_sentence_is_cut_not_overrun(void **state) {
   assert_int_equal(strlen(cf_status_sentence()), CF_SENTENCE_MAX - 1);
 }
 
+static void a_sentence_steers_no_terminal(void **state) {
+  (void)state;
+  assert_int_equal(cf_fail(CF_BAD_FILE, "%s: not a scene", "\033[2Ja\r\tb\x7f.yaml"), CF_BAD_FILE);
+  assert_string_equal(cf_status_sentence(), "?[2Ja??b?.yaml: not a scene");
+  assert_int_equal(cf_fail(CF_BAD_FILE, "%s", "f\303\274r\nzwei"), CF_BAD_FILE);
+  assert_string_equal(cf_status_sentence(), "f\303\274r\nzwei"); /* letters of UTF-8 and ends of lines stay */
+}
+
 static void sentences_belong_to_their_thread(void **state) {
   (void)state;
   int mixed = 0;
@@ -77,6 +85,7 @@ int main(void) {
       cmocka_unit_test(a_failure_passes_up_with_its_sentence),
       cmocka_unit_test(a_sentence_may_quote_a_deeper_one),
       cmocka_unit_test(a_long_sentence_is_cut_not_overrun),
+      cmocka_unit_test(a_sentence_steers_no_terminal),
       cmocka_unit_test(sentences_belong_to_their_thread),
       cmocka_unit_test(exit_codes_are_the_promised_ones),
   };
