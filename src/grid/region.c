@@ -158,21 +158,45 @@ void cf_region_ghosts(cf_region *r, const bool wraps[3]) {
 
 typedef struct taking {
   ptrdiff_t inside;
+  int low[3], high[3]; /* of the cells inside */
   bool bad;
   int where[3], byte;
 } taking;
 
+/* What bytes of a row are: how many say inside, and whether one says nothing. */
+typedef struct tally {
+  int inside, bad;
+} tally;
+
+CF_CLONES static tally tally_of(const int n, const unsigned char *kind) {
+  int inside = 0, bad = 0;
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) {
+    inside += kind[i] == CF_CELL_INSIDE;
+    bad += kind[i] > CF_CELL_OUTSIDE;
+  }
+  return (tally){inside, bad};
+}
+
 static void take_row(const row_of_cells *w, void *context) {
   taking *c = context;
-  const cf_region *r = w->region;
-  const unsigned char *kind = r->kind + cf_box_at(&r->grid.box, 0, w->j, w->k);
-  for (int i = w->low; i < w->high; ++i) {
-    if (kind[i] > CF_CELL_OUTSIDE && !c->bad) {
-      *c = (taking){.bad = true, .where = {i, w->j, w->k}, .byte = kind[i]};
-      return;
-    }
-    c->inside += kind[i] == CF_CELL_INSIDE;
+  const unsigned char *kind = w->region->kind + cf_box_at(&w->region->grid.box, 0, w->j, w->k);
+  const tally row = tally_of(w->high - w->low, kind + w->low);
+  int low = w->low, high = w->high;
+  if (row.bad > 0 && !c->bad) {
+    while (kind[low] <= CF_CELL_OUTSIDE) ++low;
+    *c = (taking){.bad = true, .where = {low, w->j, w->k}, .byte = kind[low]};
+    return;
   }
+  if (row.inside == 0) return;
+  while (kind[low] != CF_CELL_INSIDE) ++low;
+  while (kind[high - 1] != CF_CELL_INSIDE) --high;
+  const int first[3] = {low, w->j, w->k}, end[3] = {high, w->j + 1, w->k + 1};
+  for (int a = 0; a < 3; ++a) {
+    c->low[a] = c->inside > 0 ? CF_MIN(c->low[a], first[a]) : first[a];
+    c->high[a] = c->inside > 0 ? CF_MAX(c->high[a], end[a]) : end[a];
+  }
+  c->inside += row.inside;
 }
 
 static atomic_uint_least64_t updates;
@@ -184,6 +208,23 @@ cf_status cf_region_update(cf_region *r) {
     return cf_fail(CF_BAD_ARGUMENT, "cell (%d, %d, %d) has kind %d: must be 0 (wall) to 3 (outside)",
                    c.where[0], c.where[1], c.where[2], c.byte);
   r->inside = c.inside;
+  memcpy(r->low, c.low, sizeof r->low);
+  memcpy(r->high, c.high, sizeof r->high);
   r->stamp = (uint64_t)atomic_fetch_add(&updates, 1) + 1;
   return CF_OK;
+}
+
+void cf_region_look(cf_region *r, const cf_region *from, const int low[3]) {
+  const cf_box *b = &r->grid.box, *there = &from->grid.box;
+  CF_PARALLEL_ROWS (b, r->grid.threads, row) {
+    const int j = (int)(row % b->n[1]), k = (int)(row / b->n[1]);
+    memcpy(r->kind + cf_box_row(b, row), from->kind + cf_box_at(there, low[0], low[1] + j, low[2] + k),
+           (size_t)b->n[0]);
+  }
+  r->inside = from->inside;
+  for (int a = 0; a < 3; ++a) {
+    r->low[a] = from->low[a] - low[a];
+    r->high[a] = from->high[a] - low[a];
+  }
+  r->stamp = from->stamp;
 }

@@ -28,7 +28,8 @@ struct cf_region {
   unsigned char *kind;   /* at cell (0, 0, 0); ghosts are never read */
   cf_cell value;         /* of held cells */
   const cf_tiles *tiles; /* NULL: every cell of the box is looked at */
-  ptrdiff_t inside;      /* cells, as of the latest update */
+  ptrdiff_t inside;      /* cells, as of the latest update, */
+  int low[3], high[3];   /* and within which ends they lie: low <= (i, j, k) < high */
   uint64_t stamp;        /* of the latest update: no two updates of any regions have the same */
 };
 
@@ -46,6 +47,10 @@ void cf_region_fill(cf_region *r, cf_cell_kind kind);
 
 /* After the tiles have changed: cells that left are walls, and their pages are given back. */
 void cf_region_retire(cf_region *r);
+
+/* Makes r, which has no tiles, what the region `from` is in the cells from `low` on, as of its latest update; the cells inside
+ * must all be among them. Values are left alone. */
+void cf_region_look(cf_region *r, const cf_region *from, const int low[3]);
 
 /* One layer of ghosts: beyond a wall of the box a cell is of the kind of the one beside it, or of the one it wraps to.
  * For those who read kinds across faces; solvers do not. */

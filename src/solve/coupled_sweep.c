@@ -104,9 +104,11 @@ CF_KERNEL void half_row(const int dim, const int form, const int n, const view *
     half_piece(dim, form, CF_MIN(APART, n - from), v, (place){at.p + from, at.parity});
 }
 
+/* Nothing is left where there is no equation: r is that of an earlier region there. */
 CF_KERNEL void residual_row(const int dim, const int n, const view *v, const place at) {
   const view w = *v;
   const float *e = w.e + at.p, *r = w.r + at.p, *free = w.free + at.p, *held = w.held + at.p;
+  const float *inverse = w.inverse + at.p;
   float *rest = w.rest + at.p;
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
@@ -116,7 +118,7 @@ CF_KERNEL void residual_row(const int dim, const int n, const view *v, const pla
       const float *c = w.c[a] + at.p;
       sum += c[i] * (e[i] - e[i - w.stride[a]]) - c[i + w.stride[a]] * (e[i + w.stride[a]] - e[i]);
     }
-    rest[i] = r[i] - sum;
+    rest[i] = inverse[i] > 0 ? r[i] - sum : 0;
   }
 }
 

@@ -25,6 +25,9 @@
  * V-cycles), "multigrid-pcg" (conjugate gradients around V-cycles), or by elimination: "line", "direct" (few cells). */
 const char *cf_helmholtz_method(const cf_helmholtz *A);
 
+/* From now on regions are not solved in windows of their box (window.h). */
+void cf_helmholtz_forbid_windows(cf_helmholtz *A);
+
 /* b += what the values of held walls contribute, beta phi_wall 2/h^2. */
 void cf_helmholtz_add_walls(const cf_helmholtz *A, const cf_wall_values *walls, cf_cell b);
 

@@ -14,6 +14,7 @@
 #include "solve/pcg.h"
 #include "solve/transfer.h"
 #include "solve/varied.h"
+#include "solve/window.h"
 
 /* On the coarsest level: so far beyond any outer tolerance that its error is no part of the cycle's. */
 #define COARSEST_TOLERANCE 1e-8
@@ -56,6 +57,7 @@ void cf_helmholtz_destroy(cf_helmholtz *A) {
   cf_direct_destroy(&A->direct);
   cf_box_solver_destroy(A->box);
   cf_box_solver_destroy(A->around);
+  cf_window_destroy(A->window);
   cf_free(A);
 }
 
@@ -208,10 +210,38 @@ static cf_status set_around(cf_helmholtz *A, const cf_coefficients *c) {
   return CF_OK;
 }
 
+/* The path that is left has no use for its memory. */
+static void leave_region(cf_helmholtz *A) {
+  A->is_varied = A->around_is_set = A->in_box = false;
+  cf_box_solver_destroy(A->around);
+  cf_varied_destroy(A->varied);
+  A->around = NULL;
+  A->varied = NULL;
+}
+
+static void leave_window(cf_helmholtz *A) {
+  A->in_window = false;
+  cf_window_destroy(A->window);
+  A->window = NULL;
+}
+
+static cf_status set_window(cf_helmholtz *A, const cf_coefficients *c) {
+  if (!A->in_window) leave_region(A);
+  A->in_window = false;
+  CF_TRY(cf_window_set(&A->window, &A->grid, &A->walls, A->wanted, c));
+  A->in_window = true;
+  return CF_OK;
+}
+
+void cf_helmholtz_forbid_windows(cf_helmholtz *A) { A->no_windows = true; }
+
 cf_status cf_helmholtz_set(cf_helmholtz *A, const cf_coefficients *c) {
   if (!(c->alpha >= 0) || !(c->beta >= 0) || !isfinite(c->alpha) || !isfinite(c->beta))
     return cf_fail(CF_BAD_ARGUMENT, "alpha = %g, beta = %g: must be finite and not negative", c->alpha,
                    c->beta);
+  if (!A->no_windows && cf_window_pays(&A->grid, &A->walls, c)) return set_window(A, c);
+  if (c->region != NULL) leave_window(A);
+  A->in_window = false;
   if (A->is_varied && A->around_is_set && cf_varied_has(A->varied, c)) return CF_OK;
   const bool stood = A->is_varied && A->around_is_set, in_box = A->in_box;
   A->around_is_set = false;

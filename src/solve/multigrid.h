@@ -31,6 +31,8 @@ struct cf_helmholtz {
   struct cf_box_solver *around; /* numbers in a region: the fast path there, above levels of `varied` */
   bool around_tiles;            /* it was made for tiles */
   bool around_is_set;           /* ... and nothing else has been set since */
+  struct cf_window *window;     /* a region that fills a small part of the box; NULL until there is one */
+  bool in_window, no_windows;   /* the present coefficients are a case for it; none may be */
   cf_cell r, p, Ap, z;          /* of conjugate gradients on the finest level */
   cf_cell coarse[3];            /* the same on the coarsest */
   int coarse_level;             /* for which `coarse` is shaped; -1: none yet */

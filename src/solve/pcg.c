@@ -14,6 +14,7 @@
 #include "solve/box_solver.h"
 #include "solve/multigrid.h"
 #include "solve/varied.h"
+#include "solve/window.h"
 
 /* A start that leaves more than this of the residual's square has met round-off. */
 #define START_GAIN 0.25
@@ -103,6 +104,10 @@ static void set_outside(const cf_helmholtz *A, const cf_cell x) {
 }
 
 void cf_helmholtz_apply(cf_helmholtz *A, const cf_cell x, const cf_cell y) {
+  if (A->in_window) {
+    cf_window_apply(A->window, x, y);
+    return;
+  }
   if (A->is_varied) {
     cf_varied_apply(A->varied, x, y);
     return;
@@ -112,6 +117,7 @@ void cf_helmholtz_apply(cf_helmholtz *A, const cf_cell x, const cf_cell y) {
 }
 
 double cf_helmholtz_residual(cf_helmholtz *A, const cf_cell x, const cf_cell b) {
+  if (A->in_window) return cf_window_residual(A->window, x, b);
   if (A->is_varied) return cf_varied_residual(A->varied, x, b);
   cf_level *l = &A->level[0];
   set_outside(A, x);
@@ -180,6 +186,7 @@ static cf_status solve_plain(cf_helmholtz *A, const cf_cell b, const cf_solve_op
 }
 
 const char *cf_helmholtz_method(const cf_helmholtz *A) {
+  if (A->in_window) return cf_window_method(A->window);
   if (A->is_varied && A->in_box) return cf_box_solver_method(A->around);
   if (A->is_varied) return cf_varied_method(A->varied);
   if (cf_level_is_line(&A->level[0])) return "line";
@@ -189,6 +196,7 @@ const char *cf_helmholtz_method(const cf_helmholtz *A) {
 
 cf_status cf_helmholtz_solve(cf_helmholtz *A, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                              cf_solve_report *report) {
+  if (A->in_window) return cf_window_solve(A->window, b, o, x, report);
   cf_level *l = &A->level[0];
   *report = (cf_solve_report){.levels = A->depth, .pockets = A->singular, .method = cf_helmholtz_method(A)};
   bool finished = false;
@@ -216,13 +224,18 @@ void cf_helmholtz_add_walls(const cf_helmholtz *A, const cf_wall_values *v, cons
       for (int i_c = 0; i_c < w.n_c; ++i_c)
         for (int i_b = 0; i_b < w.n_b; ++i_b) {
           const ptrdiff_t p = cf_wall_cell(&l->box, &w, i_b, i_c);
-          const double beta =
-              A->is_varied ? cf_varied_wall_beta(A->varied, a, side == 0 ? p : p + w.outward) : A->beta;
+          const ptrdiff_t face = side == 0 ? p : p + w.outward;
+          const double beta = A->in_window   ? cf_window_wall_beta(A->window, a, p, face)
+                              : A->is_varied ? cf_varied_wall_beta(A->varied, a, face)
+                                             : A->beta;
           b.at[p] += (cf_real)(table * beta * v->at[a][side][i_b + (ptrdiff_t)w.n_b * i_c]);
         }
     }
 }
 
 void cf_helmholtz_add_held(const cf_helmholtz *A, const cf_cell b) {
-  if (A->is_varied) cf_varied_add_held(A->varied, b);
+  if (A->in_window)
+    cf_window_add_held(A->window, b);
+  else if (A->is_varied)
+    cf_varied_add_held(A->varied, b);
 }

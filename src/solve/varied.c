@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "grid/halo.h"
+#include "solve/held.h"
 #include "solve/varied_part.h"
 
 /* Full sweeps after the coarse correction below the finest level, where they cost little: in a V-cycle; in a W-cycle. */
@@ -285,30 +286,14 @@ double cf_varied_wall_beta(const cf_varied *v, const int axis, const ptrdiff_t f
 void cf_varied_add_held(const cf_varied *v, const cf_cell b) {
   if (v->region == NULL) return;
   const cf_coupled *l = &v->level[0];
-  const cf_helmholtz *A = v->A;
-  const cf_real *value = v->region->value.at;
-  const double twice = 2 / (A->grid.h * A->grid.h);
+  const cf_held held = {
+      v->region, {l->periodic[0], l->periodic[1], l->periodic[2]}, v->given_beta, v->beta_number};
   CF_PARALLEL_COUPLED (l, r)
     CF_TILE_ROWS (l, r, j, k)
       CF_TILE_RUNS (l, r, run)
         for (int i = run->low; i < run->high; ++i) {
-          const int at[3] = {i, j, k};
           const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
-          if (v->region->kind[p] != CF_CELL_INSIDE) continue;
-          double sum = 0;
-          for (int a = 0; a < l->dim; ++a)
-            for (int side = 0; side < 2; ++side) {
-              const int n = l->box.n[a];
-              const ptrdiff_t s = l->box.stride[a];
-              const bool end = at[a] == (side ? n - 1 : 0);
-              if (end && !l->periodic[a]) continue;
-              const ptrdiff_t q = !end ? (side ? p + s : p - s) : side ? p - (n - 1) * s : p + (n - 1) * s;
-              if (v->region->kind[q] != CF_CELL_HELD) continue;
-              sum += (v->given_beta.at[0] != NULL ? (double)v->given_beta.at[a][side ? p + s : p]
-                                                  : v->beta_number) *
-                     (double)value[q];
-            }
-          b.at[p] += (cf_real)(twice * sum);
+          b.at[p] += (cf_real)cf_held_beside(&held, (int[]){i, j, k}, p);
         }
 }
 
