@@ -44,7 +44,7 @@ static inline int test_memory_is_watched(void) {
   return 1;
 #else
   const char *preloaded = getenv("LD_PRELOAD");
-  return preloaded != NULL && strstr(preloaded, "vgpreload") != NULL;
+  return getenv("SANITIZED") != NULL || (preloaded != NULL && strstr(preloaded, "vgpreload") != NULL);
 #endif
 }
 
