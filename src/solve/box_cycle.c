@@ -18,6 +18,9 @@
  * one 5 cycles do what 6 did; in a W-cycle. */
 #define COARSE_SWEEPS_V 3
 #define COARSE_SWEEPS_W 2
+/* Sweeps over rows at edges after the coarse correction, over-relaxed. */
+#define EDGE_SWEEPS 2
+#define EDGE_OMEGA  1.25
 /* A pass of half sweeps alone gains at most this, and has at most so many of them. */
 #define PASS_GAIN   1e-7
 #define PASS_SWEEPS 32
@@ -196,10 +199,11 @@ static void push_second_part(const cf_box_solver *f, cf_pass *p) {
     push_end(p, 0, 0);
     return;
   }
-  if (f->varied != NULL) { /* near walls the correction is not as good as elsewhere */
-    push(p, CF_PASS_RED_EDGES, 1);
-    push(p, CF_PASS_BLACK_EDGES, 1);
-  }
+  if (f->varied != NULL) /* near walls the correction is not as good as elsewhere */
+    for (int v = 0; v < EDGE_SWEEPS; ++v) {
+      push(p, CF_PASS_RED_EDGES, EDGE_OMEGA);
+      push(p, CF_PASS_BLACK_EDGES, EDGE_OMEGA);
+    }
   push(p, CF_PASS_RED, f->omega[4]);
   push(p, CF_PASS_BLACK, f->omega[5]);
   push(p, CF_PASS_RED, f->omega[6]);

@@ -91,19 +91,16 @@ static int row_in(const cf_split *s, const int a, const int j) {
   return s->plain->axis[a].periodic ? (j + s->n[a]) % s->n[a] : -1;
 }
 
-/* The plain blocks among those of a word of row (j, k): all inside in the coarse rows to which the row and its
- * neighbours along each axis belong. */
+/* The plain blocks among those of a word of row (j, k): all inside in the coarse row to which the row belongs and
+ * in the coarse rows around it. */
 static uint64_t plain_of(const finding *f, const int j, const int k, const int word) {
   uint64_t plain = f->all[cf_segments_row(f->s, j, k) * f->words + word];
-  const int depth = f->s->dim == 3 ? 2 : 1, pair[3] = {0, j - j % 2, k - k % 2};
-  for (int a = 1; a < f->s->dim && plain != 0; ++a)
-    for (int far = -2; far < 4; ++far)
-      for (int near = 0; near < depth; ++near) {
-        const int there[3] = {0, a == 1 ? pair[1] + far : pair[1] + near,
-                              a == 2 ? pair[2] + far : pair[2] + near};
-        const int jj = row_in(f->s, 1, there[1]), kk = f->s->dim == 3 ? row_in(f->s, 2, there[2]) : 0;
-        if (jj >= 0 && kk >= 0) plain &= f->all[cf_segments_row(f->s, jj, kk) * f->words + word];
-      }
+  const bool deep = f->s->dim == 3;
+  for (int K = deep ? k - k % 2 - 2 : 0; K < (deep ? k - k % 2 + 4 : 1) && plain != 0; ++K)
+    for (int J = j - j % 2 - 2; J < j - j % 2 + 4; ++J) {
+      const int jj = row_in(f->s, 1, J), kk = deep ? row_in(f->s, 2, K) : 0;
+      if (jj >= 0 && kk >= 0) plain &= f->all[cf_segments_row(f->s, jj, kk) * f->words + word];
+    }
   return plain;
 }
 

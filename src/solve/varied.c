@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "grid/halo.h"
 #include "solve/held.h"
+#include "solve/setting.h"
 #include "solve/varied_part.h"
 
 /* Full sweeps after the coarse correction below the finest level, where they cost little: in a V-cycle; in a W-cycle. */
@@ -227,6 +228,8 @@ static cf_status make_levels(cf_varied *v, const cf_coefficients *c, const bool 
     CF_TRY(cf_coarsen_follow(l, coarse));
     if (!all) cf_renewal_descend(&v->renewal, l);
     CF_TRY(next_part(v, at, all, &w));
+    coarse->excess[0] = at == 1 ? v->excess[0] : 0;
+    coarse->excess[1] = at == 1 ? v->excess[1] : 0;
     CF_TRY(cf_coarsen(l, coarse, &w));
   }
   return is_eliminated(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;
@@ -252,13 +255,18 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
   cf_varied_find_range(v, c, &alpha, &least, &beta);
   const double couplings = 2 * A->grid.box.dim * beta / (A->grid.h * A->grid.h);
   v->scale = alpha + couplings > 0 ? 1 / CF_MAX(alpha + couplings, 1e-300) : 1;
-  v->sweeps = cf_varied_set_sweeps(v, least, least > 0 ? couplings / least : INFINITY);
+  const double stiffness = least > 0 ? couplings / least : INFINITY;
+  v->sweeps = cf_varied_set_sweeps(v, least, stiffness);
   if (v->sweeps) {
     v->depth = 1;
     v->pockets.count = 0;
     return CF_OK;
   }
-  v->depth = depth_for(v, least > 0 ? couplings / least : INFINITY);
+  v->depth = depth_for(v, stiffness);
+  const cf_setting on =
+      are_numbers_in_region(c) ? cf_setting_for(A->grid.box.dim, stiffness) : (cf_setting){0};
+  v->excess[0] = (float)on.alpha;
+  v->excess[1] = (float)on.beta;
   bool all = true;
   if (stands)
     CF_TRY(cf_renewal_compare(&v->renewal, &v->level[0], c->region, &all));

@@ -20,6 +20,7 @@ struct cf_varied {
   int levels, depth; /* made; in use */
   bool sweeps;       /* half sweeps alone do; `jacobi`: the most that diffusion has of a diagonal */
   double jacobi;
+  float excess[2]; /* of the level below the finest (amend.h) */
   bool careful;  /* the cycle is symmetric: slower, and never led astray */
   bool thorough; /* two corrections from each level below, without sweeps of their own near walls */
   cf_band_sweeps band_sweeps; /* near walls, before and after the coarse correction */
