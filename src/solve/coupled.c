@@ -10,16 +10,25 @@
 
 /* --- making ------------------------------------------------------------------------------------------- */
 
-static cf_status field_create(const cf_coupled *l, void **at, const size_t element) {
+/* Fields begin at different places within a page: a load from the place that another field has just been stored to,
+ * but for the page, waits for the store. */
+static size_t field_shift(const cf_coupled *l, const int number) {
+  return l->tiles == NULL ? (size_t)number * 5 * CF_ALIGN : 0;
+}
+
+static cf_status field_create(const cf_coupled *l, const int number, void **at, const size_t element) {
   void *pages;
-  CF_TRY(cf_pages_reserve(&pages, (size_t)l->box.size * element, l->tiles == NULL));
-  *at = (char *)pages + (size_t)l->box.first * element;
+  const size_t shift = field_shift(l, number);
+  CF_TRY(cf_pages_reserve(&pages, (size_t)l->box.size * element + shift, l->tiles == NULL));
+  *at = (char *)pages + (size_t)l->box.first * element + shift;
   return CF_OK;
 }
 
-static void field_destroy(const cf_coupled *l, void *at, const size_t element) {
+static void field_destroy(const cf_coupled *l, const int number, void *at, const size_t element) {
+  const size_t shift = field_shift(l, number);
   if (at != NULL)
-    cf_pages_release((char *)at - (size_t)l->box.first * element, (size_t)l->box.size * element);
+    cf_pages_release((char *)at - (size_t)l->box.first * element - shift,
+                     (size_t)l->box.size * element + shift);
 }
 
 /* Every float field of a level, for what is done to all of them. */
@@ -49,9 +58,10 @@ cf_status cf_coupled_create(cf_coupled *l, const cf_box *b, const bool periodic[
   for (int a = 0; a < b->dim; ++a) l->periodic[a] = periodic[a] && b->n[a] > 1;
   float **field[FLOATS];
   float_fields(l, field);
-  for (int f = 0; f < FLOATS - (b->dim == 2); ++f) CF_TRY(field_create(l, (void **)field[f], sizeof(float)));
-  for (int a = 0; a < b->dim; ++a) CF_TRY(field_create(l, (void **)&l->weight[a], 1));
-  CF_TRY(field_create(l, (void **)&l->mark, 1));
+  for (int f = 0; f < FLOATS - (b->dim == 2); ++f)
+    CF_TRY(field_create(l, f, (void **)field[f], sizeof(float)));
+  for (int a = 0; a < b->dim; ++a) CF_TRY(field_create(l, FLOATS + a, (void **)&l->weight[a], 1));
+  CF_TRY(field_create(l, 0, (void **)&l->mark, 1));
   CF_TRY(CF_NEW(&l->band, (ptrdiff_t)b->n[1] * b->n[2]));
   return tiles == NULL ? all_rows(l) : CF_NEW(&l->row_at, (ptrdiff_t)tiles->n[1] * tiles->n[2]);
 }
@@ -59,9 +69,9 @@ cf_status cf_coupled_create(cf_coupled *l, const cf_box *b, const bool periodic[
 void cf_coupled_destroy(cf_coupled *l) {
   float **field[FLOATS];
   float_fields(l, field);
-  for (int f = 0; f < FLOATS; ++f) field_destroy(l, *field[f], sizeof(float));
-  for (int a = 0; a < 3; ++a) field_destroy(l, l->weight[a], 1);
-  field_destroy(l, l->mark, 1);
+  for (int f = 0; f < FLOATS; ++f) field_destroy(l, f, *field[f], sizeof(float));
+  for (int a = 0; a < 3; ++a) field_destroy(l, FLOATS + a, l->weight[a], 1);
+  field_destroy(l, 0, l->mark, 1);
   cf_free(l->all_rows);
   cf_free(l->row_at);
   cf_free(l->band);

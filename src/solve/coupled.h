@@ -124,6 +124,9 @@ void cf_coupled_restrict(const cf_coupled *l, const cf_coupled *coarse);
 /* e += interpolated coarse->e. */
 void cf_coupled_prolong(const cf_coupled *coarse, const cf_coupled *l);
 
+/* The same for a run of row (j, k), without cells that have another parent; seams of coarse->e are right. */
+void cf_coupled_spread(const cf_coupled *coarse, const cf_coupled *l, const cf_run *run, int j, int k);
+
 /* The correction of each cell that has another parent, from its rest in odd_value into odd_value: its parent's e, or
  * the constant of its island. */
 void cf_coupled_lift_odds(const cf_coupled *coarse, const cf_coupled *l);

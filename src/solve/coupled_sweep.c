@@ -2,7 +2,7 @@
  *
  * Half sweeps on a level of couplings, and its residual, as lists of stages.
  */
-#include "solve/coupled.h"
+#include "solve/coupled_pass.h"
 
 #include "solve/colours.h"
 #include "solve/lean.h"
@@ -44,6 +44,8 @@ typedef struct view {
   const float *r, *inverse, *free, *held, *c[3];
   ptrdiff_t stride[3];
   float omega;
+  float *to; /* of sums: where they go, */
+  bool pairs, is_first;
 } view;
 
 typedef struct place {
@@ -105,80 +107,107 @@ CF_KERNEL void half_row(const int dim, const int form, const int n, const view *
 }
 
 /* Nothing is left where there is no equation: r is that of an earlier region there. */
-CF_KERNEL void residual_row(const int dim, const int n, const view *v, const place at) {
+CF_KERNEL void residual_piece(const int dim, const int n, const view *v, const ptrdiff_t p, float *rest) {
   const view w = *v;
-  const float *e = w.e + at.p, *r = w.r + at.p, *free = w.free + at.p, *held = w.held + at.p;
-  const float *inverse = w.inverse + at.p;
-  float *rest = w.rest + at.p;
+  const float *e = w.e + p, *r = w.r + p, *free = w.free + p, *held = w.held + p, *inverse = w.inverse + p;
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
     float sum = (free[i] + held[i]) * e[i];
     CF_AXIS_LOOP
     for (int a = 0; a < dim; ++a) {
-      const float *c = w.c[a] + at.p;
+      const float *c = w.c[a] + p;
       sum += c[i] * (e[i] - e[i - w.stride[a]]) - c[i + w.stride[a]] * (e[i + w.stride[a]] - e[i]);
     }
     rest[i] = inverse[i] > 0 ? r[i] - sum : 0;
   }
 }
 
+CF_KERNEL void residual_row(const int dim, const int n, const view *v, const place at) {
+  residual_piece(dim, n, v, at.p, v->rest + at.p);
+}
+
+/* The pairs of cells of a row go to the coarse row above it, or its cells do; what is missing at its end counts as 0. */
+CF_KERNEL void sum_row(const int dim, const int n, const view *v, const place at) {
+  float rest[APART + 1];
+  const int shift = v->pairs, first = v->is_first;
+  for (int from = 0; from < n; from += APART) {
+    const int m = CF_MIN(APART, n - from);
+    float *to = v->to + (from >> shift);
+    residual_piece(dim, m, v, at.p + from, rest);
+    rest[m] = 0;
+    if (shift) {
+      CF_ROW_LOOP
+      for (int i = 0; i < (m + 1) / 2; ++i) to[i] = (first ? 0 : to[i]) + (rest[2 * i] + rest[2 * i + 1]);
+    } else {
+      CF_ROW_LOOP
+      for (int i = 0; i < m; ++i) to[i] = (first ? 0 : to[i]) + rest[i];
+    }
+  }
+}
+
 CF_CLONED(first_row, const view *, const place)
 CF_CLONED_FORMS(half_row, const view *, const place)
 CF_CLONED(residual_row, const view *, const place)
+CF_CLONED(sum_row, const view *, const place)
 
 /* --- stages ------------------------------------------------------------------------------------------- */
 
-typedef enum stage_kind { FIRST, HALF, BAND, REST } stage_kind;
+typedef cf_coupled_pass pass;
 
-typedef struct stage {
-  stage_kind kind;
-  int colour;
-  float omega;
-} stage;
-
-/* What is done to a level on one side of the coarse correction. */
-#define STAGES_MAX 24
-
-typedef struct list {
-  const cf_coupled *l;
-  int count;
-  stage stage[STAGES_MAX];
-} list;
-
-static void push(list *s, const stage_kind kind, const int colour, const float omega) {
-  if (s->count < STAGES_MAX) s->stage[s->count++] = (stage){kind, colour, omega};
+static void push_band(pass *s, const cf_band_sweeps band, const bool back) {
+  if (s->l->has_band)
+    for (int v = 0; v < 2 * band.count; ++v) cf_pass_add(s, CF_STAGE_BAND, (v + back) % 2, band.omega);
 }
 
-static void push_band(list *s, const cf_band_sweeps band, const bool back) {
-  for (int v = 0; v < 2 * band.count && s->l->has_band; ++v) push(s, BAND, (v + back) % 2, band.omega);
+/* Where the sums of a row go. */
+static void find_sums(const pass *s, const cf_run *run, const int j, const int k, view *w) {
+  const cf_coupled *l = s->l;
+  const int x = l->coarsened[0], y = l->coarsened[1], z = l->coarsened[2];
+  w->pairs = x;
+  w->is_first = (j & y) == 0 && (k & z) == 0;
+  w->to = s->coarse->r + cf_box_at(&s->coarse->box, run->low >> x, j >> y, k >> z);
 }
 
-static void run_row(const cf_coupled *l, const stage_kind kind, const int n, const view *v, const place at) {
-  if (kind == FIRST)
+static void run_row(const pass *s, const cf_coupled_stage kind, const int n, const view *v, const place at) {
+  const cf_coupled *l = s->l;
+  if (kind == CF_STAGE_FIRST)
     first_row_by_dim(l->dim, n, v, at);
-  else if (kind == REST)
+  else if (kind == CF_STAGE_REST)
     residual_row_by_dim(l->dim, n, v, at);
+  else if (kind == CF_STAGE_SUM)
+    sum_row_by_dim(l->dim, n, v, at);
   else
     half_row_by_form(l->dim, l->is_gentle, n, v, at);
 }
 
 /* Stage `number` on rows [j, j_end) of plane k. end: cells from there on, along each axis, are left out. */
-static void run_rows_to(const list *s, const int number, int j, const int j_end, const int k,
+static void run_rows_to(const pass *s, const int number, int j, const int j_end, const int k,
                         const int end[3]) {
   const cf_coupled *l = s->l;
-  const stage *t = &s->stage[number];
-  const view w = view_of(l, t->omega);
+  const cf_coupled_stage kind = s->stage[number].kind;
+  view w = view_of(l, s->stage[number].omega);
+  if (kind == CF_STAGE_NONE) return;
   for (; j < CF_MIN(j_end, end[1]); ++j) {
     const cf_tile_row *row = cf_coupled_row_at(l, j, k);
-    if (row == NULL || (t->kind == BAND && !l->band[j + (ptrdiff_t)l->box.n[1] * k])) continue;
-    for (const cf_run *run = l->run + row->run; run < l->run + row->run_end; ++run)
-      run_row(l, t->kind, CF_MIN(run->high, end[0]) - run->low, &w,
-              (place){cf_box_at(&l->box, run->low, j, k), (j + k + t->colour + run->low) & 1});
+    if (row == NULL || (kind == CF_STAGE_BAND && !l->band[j + (ptrdiff_t)l->box.n[1] * k])) continue;
+    for (const cf_run *run = l->run + row->run; run < l->run + row->run_end; ++run) {
+      if (kind == CF_STAGE_OWN) {
+        s->own(s->of, run, j, k);
+        continue;
+      }
+      if (kind == CF_STAGE_SPREAD) {
+        cf_coupled_spread(s->coarse, l, run, j, k);
+        continue;
+      }
+      if (kind == CF_STAGE_SUM) find_sums(s, run, j, k, &w);
+      run_row(s, kind, CF_MIN(run->high, end[0]) - run->low, &w,
+              (place){cf_box_at(&l->box, run->low, j, k), (j + k + s->stage[number].colour + run->low) & 1});
+    }
   }
 }
 
 static void run_rows(const void *of, const int number, const int j, const int j_end, const int k) {
-  const list *s = of;
+  const pass *s = of;
   run_rows_to(s, number, j, j_end, k, s->l->box.n);
 }
 
@@ -216,72 +245,99 @@ static void sweep_seam(const cf_coupled *l, const int a, const int colour, const
 }
 
 /* `back`: the last layers first, then all others. */
-static void run_stage(const list *s, const int number, const bool back) {
+static void run_stage(const pass *s, const int number, const bool back) {
   const cf_coupled *l = s->l;
-  const stage *t = &s->stage[number];
+  const cf_coupled_stage kind = s->stage[number].kind;
+  const int colour = s->stage[number].colour;
+  const bool sweeps = kind == CF_STAGE_FIRST || kind == CF_STAGE_HALF || kind == CF_STAGE_BAND;
   int end[3] = {l->box.n[0], l->box.n[1], l->box.n[2]};
-  for (int a = l->dim - 1; a >= 0 && back; --a) {
-    sweep_seam(l, a, t->colour, true);
+  for (int a = l->dim - 1; a >= 0 && back && sweeps; --a) {
+    sweep_seam(l, a, colour, true);
     end[a] -= has_odd_seam(l, a);
   }
-  if (t->kind != FIRST) cf_coupled_wrap(l, l->e);
+  if (kind != CF_STAGE_FIRST && kind != CF_STAGE_SPREAD) cf_coupled_wrap(l, l->e);
   CF_PARALLEL_COUPLED (l, v)
     for (int k = l->row[v].k; k < CF_MIN(l->row[v].k_end, end[2]); ++k)
       run_rows_to(s, number, l->row[v].j, l->row[v].j_end, k, end);
-  for (int a = 0; a < l->dim && !back && t->kind != REST; ++a) sweep_seam(l, a, t->colour, false);
+  for (int a = 0; a < l->dim && !back && sweeps; ++a) sweep_seam(l, a, colour, false);
+}
+
+/* Threads that do not follow each other must not add to the same sums: rests are put down, then added. */
+static void run_in_turn(const pass *of, const bool back) {
+  pass s = *of;
+  for (int v = 0; v < s.count; ++v) {
+    const bool sums = s.stage[v].kind == CF_STAGE_SUM;
+    if (sums) s.stage[v].kind = CF_STAGE_REST;
+    run_stage(&s, v, back);
+    if (sums) cf_coupled_restrict(s.l, s.coarse);
+  }
 }
 
 /* --- all of a list ------------------------------------------------------------------------------------ */
 
-static void run(const list *s, const bool back) {
-  const cf_coupled *l = s->l;
+/* Both rows that a sum is made of are to be in one tile: tiles begin at even rows, for stages of even number. */
+static void make_even(pass *s, int *height) {
+  for (int v = 0; v < s->count; ++v) {
+    if (s->stage[v].kind != CF_STAGE_SUM) continue;
+    *height += *height % 2;
+    if (v % 2 == 0 || s->count == CF_STAGES_MAX) continue;
+    for (int u = s->count++; u > v; --u) s->stage[u] = s->stage[u - 1];
+    s->stage[v++].kind = CF_STAGE_NONE;
+  }
+}
+
+void cf_coupled_run(const cf_coupled_pass *of, const bool back) {
+  pass s = *of;
+  const cf_coupled *l = s.l;
   const int rows = l->high[1] - l->low[1], threads = cf_coupled_threads(l);
+  for (int v = 0; v < s.count; ++v)
+    if (s.stage[v].kind == CF_STAGE_SPREAD) cf_coupled_wrap(s.coarse, s.coarse->e);
   if (l->periodic[0] || l->periodic[1] || l->periodic[2]) {
-    for (int v = 0; v < s->count; ++v) run_stage(s, v, back);
+    run_in_turn(&s, back);
     return;
   }
   /* e, r, 1/diagonal and couplings of a row */
-  const ptrdiff_t row_bytes = (ptrdiff_t)(l->high[0] - l->low[0]) * (3 + l->dim) * (ptrdiff_t)sizeof(float);
+  const ptrdiff_t cell = (3 + l->dim) * (ptrdiff_t)sizeof(float) + s.own_bytes;
+  int height = cf_lean_height(rows, s.count, (l->high[0] - l->low[0]) * cell, threads);
+  make_even(&s, &height);
   cf_lean_run(&(cf_lean){.j = l->low[1],
                          .j_end = l->high[1],
                          .k = l->low[2],
                          .k_end = l->high[2],
-                         .stages = s->count,
-                         .height = cf_lean_height(rows, s->count, row_bytes, threads),
+                         .stages = s.count,
+                         .height = height,
                          .threads = threads,
                          .rows = run_rows,
-                         .of = s});
+                         .of = &s});
 }
 
 void cf_coupled_smooth_first(const cf_coupled *l, const float omega, const cf_band_sweeps band,
                              const bool with_rest) {
-  list s = {.l = l};
-  push(&s, FIRST, 0, omega);
-  push(&s, HALF, 1, omega);
+  pass s = {.l = l};
+  cf_pass_add(&s, CF_STAGE_FIRST, 0, omega);
+  cf_pass_add(&s, CF_STAGE_HALF, 1, omega);
   push_band(&s, band, false);
-  if (with_rest) push(&s, REST, 0, 1);
-  run(&s, false);
+  if (with_rest) cf_pass_add(&s, CF_STAGE_REST, 0, 1);
+  cf_coupled_run(&s, false);
 }
 
 void cf_coupled_smooth(const cf_coupled *l, const float omega, const cf_band_sweeps band, const int sweeps) {
-  list s = {.l = l};
+  pass s = {.l = l};
   push_band(&s, band, false);
-  for (int v = 0; v < 2 * sweeps; ++v) push(&s, HALF, v % 2, omega);
-  run(&s, false);
+  cf_pass_add_halves(&s, 2 * sweeps, 0, omega);
+  cf_coupled_run(&s, false);
 }
 
 void cf_coupled_smooth_again(const cf_coupled *l, const float omega) {
-  list s = {.l = l};
-  push(&s, HALF, 0, omega);
-  push(&s, HALF, 1, omega);
-  push(&s, REST, 0, 1);
-  run(&s, false);
+  pass s = {.l = l};
+  cf_pass_add_halves(&s, 2, 0, omega);
+  cf_pass_add(&s, CF_STAGE_REST, 0, 1);
+  cf_coupled_run(&s, false);
 }
 
 void cf_coupled_smooth_back(const cf_coupled *l, const float omega, const cf_band_sweeps band) {
-  list s = {.l = l};
+  pass s = {.l = l};
   push_band(&s, band, true);
-  push(&s, HALF, 1, omega);
-  push(&s, HALF, 0, omega);
-  run(&s, true);
+  cf_pass_add_halves(&s, 2, 1, omega);
+  cf_coupled_run(&s, true);
 }

@@ -144,28 +144,29 @@ void cf_coupled_prolong_back(const cf_coupled *coarse, const cf_coupled *l) {
   for (ptrdiff_t v = 0; v < l->odds; ++v) l->e[l->odd_cell[v]] = l->odd_value[v];
 }
 
-void cf_coupled_prolong(const cf_coupled *coarse, const cf_coupled *l) {
+void cf_coupled_spread(const cf_coupled *coarse, const cf_coupled *l, const cf_run *run, const int j,
+                       const int k) {
   const cf_box *c = &coarse->box;
+  const int x = l->coarsened[0], n = run->high - run->low;
+  const float *own = coarse->e + cf_box_at(c, run->low >> x, j >> l->coarsened[1], k >> l->coarsened[2]);
+  const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+  const spread s = {.own = own,
+                    .y = own + side_of(l, 1, j) * c->stride[1],
+                    .z = l->dim == 3 ? own + side_of(l, 2, k) * c->stride[2] : own,
+                    .weight = {l->weight[0] + p, l->weight[1] + p, l->dim == 3 ? l->weight[2] + p : NULL},
+                    .e = l->e + p};
+  if (x)
+    spread_pairs_by_dim(l->dim, n / 2, &s, n % 2);
+  else
+    spread_single_by_dim(l->dim, n, &s, 0);
+  if (l->is_gentle) keep_held_row(n, l->r + p, l->inverse + p, l->free + p, l->e + p);
+}
+
+void cf_coupled_prolong(const cf_coupled *coarse, const cf_coupled *l) {
   cf_coupled_wrap(coarse, coarse->e);
   correct_odds(coarse, l);
   CF_PARALLEL_COUPLED (l, v)
     CF_TILE_ROWS (l, v, j, k)
-      CF_TILE_RUNS (l, v, run) {
-        const int x = l->coarsened[0], n = run->high - run->low;
-        const float *own =
-            coarse->e + cf_box_at(c, run->low >> x, j >> l->coarsened[1], k >> l->coarsened[2]);
-        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
-        const spread s = {
-            .own = own,
-            .y = own + side_of(l, 1, j) * c->stride[1],
-            .z = l->dim == 3 ? own + side_of(l, 2, k) * c->stride[2] : own,
-            .weight = {l->weight[0] + p, l->weight[1] + p, l->dim == 3 ? l->weight[2] + p : NULL},
-            .e = l->e + p};
-        if (x)
-          spread_pairs_by_dim(l->dim, n / 2, &s, n % 2);
-        else
-          spread_single_by_dim(l->dim, n, &s, 0);
-        if (l->is_gentle) keep_held_row(n, l->r + p, l->inverse + p, l->free + p, l->e + p);
-      }
+      CF_TILE_RUNS (l, v, run) cf_coupled_spread(coarse, l, run, j, k);
   for (ptrdiff_t v = 0; v < l->odds; ++v) l->e[l->odd_cell[v]] = l->odd_value[v];
 }

@@ -131,6 +131,23 @@ static void approach(cf_varied *v, const cf_cell b, const double enough, const i
   }
 }
 
+/* By stationary cycles, as far as they go. *done: the tolerance is met. x is what it was where b or A x is not finite. */
+static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
+                       cf_solve_report *report, bool *done) {
+  cf_varied_sums s = {INFINITY, cf_varied_squares(v, b), 0};
+  const double enough = o->tolerance * o->tolerance * s.second;
+  const bool tells = sizeof(cf_real) == sizeof(double); /* else x's rounding is more than what r says */
+  *done = false;
+  if (!(s.second > 0) || !isfinite(s.second)) return CF_OK;
+  for (double first, before = INFINITY;; before = first) {
+    s.first = cf_varied_run_cycles(v, b, s.second, enough, o->max_iterations, x, &first, &report->iterations);
+    *done = tells && s.first <= enough;
+    if (*done || !(first <= 0.25 * before) || !(s.first <= CF_CYCLES_TELL * CF_CYCLES_TELL * first)) break;
+  }
+  restore_means(v, x);
+  return *done ? cf_varied_judge(v, &s, o, report) : CF_OK;
+}
+
 cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                           cf_solve_report *report) {
   if (v->sweeps) return cf_varied_sweep(v, b, o, x, report);
@@ -143,6 +160,11 @@ cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options 
     cf_pockets_restore_means(&v->loose, l, x);
   }
   report->pockets = v->pockets.count;
+  if (cf_varied_can_cycle(v)) {
+    bool done;
+    CF_TRY(cycle(v, b, o, x, report, &done));
+    if (done) return CF_OK;
+  }
   cf_varied_sums s = cf_varied_form(v, x, b);
   CF_TRY(cf_varied_judge(v, &s, o, report));
   if (s.second == 0) {

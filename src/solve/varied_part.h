@@ -101,6 +101,22 @@ cf_varied_sums cf_varied_probe(const cf_varied *v);
 /* x += a p, r -= a A p, and the next right side of the cycle; the square of r. */
 double cf_varied_advance(const cf_varied *v, double a, double scale, cf_cell x);
 
+/* --- stationary cycles (varied_cycles.c) ---------------------------------------------------------------- */
+
+/* What one residual that is not formed anew can tell of the first one. */
+#define CF_CYCLES_TELL 2e-7
+
+/* Whether the present equation is one for them. */
+bool cf_varied_can_cycle(const cf_varied *v);
+
+/* The squares of f on all of the box. */
+double cf_varied_squares(const cf_varied *v, cf_cell f);
+
+/* Cycles until the square of the residual is `enough`, or one does not gain what it should; bb: the square of b. Returns what
+ * is left; *first: what there was. */
+double cf_varied_run_cycles(const cf_varied *v, cf_cell b, double bb, double enough, int limit, cf_cell x,
+                            double *first, int *iterations);
+
 /* --- half sweeps alone (varied_sweeps.c) --------------------------------------------------------------- */
 
 /* Up to this stiffness (share of diffusion in the diagonal over alpha's) they do. */
