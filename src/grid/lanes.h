@@ -8,10 +8,13 @@
 #ifndef CF_GRID_LANES_H
 #define CF_GRID_LANES_H
 
+#include <stdint.h>
+
 #include "base/real.h"
 
 typedef double cf_eight __attribute__((vector_size(64)));
 typedef float cf_sixteen __attribute__((vector_size(64)));
+typedef int64_t cf_eight_bits __attribute__((vector_size(64))); /* what a comparison of cf_eight gives */
 
 /* The same in memory, anywhere. */
 typedef double cf_eight_doubles __attribute__((vector_size(64), aligned(8), may_alias));

@@ -147,7 +147,7 @@ static float rest_of(const cf_box_solver *f, const ptrdiff_t p) {
   const ptrdiff_t here = split_place(s, p, at), entry = entry_of(f, at);
   const int faces = f->segments.faces[entry];
   const float c = s->e[here];
-  float sum = (float)f->segments.held[entry] * c;
+  float sum = (float)(f->segments.held[entry] & CF_HELD_MASK) * c;
   for (int a = 0; a < s->dim; ++a)
     for (int side = 0; side < 2; ++side) {
       if (!(faces >> (2 * a + side) & 1)) continue;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "grid/lanes.h"
 #include "grid/sweep.h"
 
 void cf_pockets_clear(cf_pockets *q, const cf_coupled *l) {
@@ -11,6 +12,8 @@ void cf_pockets_clear(cf_pockets *q, const cf_coupled *l) {
   cf_free(q->sum);
   cf_free(q->mean);
   cf_free(q->cells);
+  cf_free(q->plain);
+  cf_free(q->rows);
   if (q->label != NULL) cf_pages_release(q->label - l->box.first, (size_t)l->box.size * sizeof *q->label);
   *q = (cf_pockets){0};
 }
@@ -104,6 +107,34 @@ static cf_status number_pockets(cf_pockets *q, const cf_coupled *l, const bool l
   return CF_NEW(&q->cells, q->count);
 }
 
+/* How many cells pockets have, which one has the most, and which rows have cells of no other. */
+static cf_status count_cells(cf_pockets *q, const cf_coupled *l) {
+  if (q->count == 0) return CF_OK;
+  if (q->plain == NULL) CF_TRY(CF_NEW(&q->plain, cf_box_rows(&l->box)));
+  if (q->rows == NULL) CF_TRY(CF_NEW(&q->rows, cf_box_rows(&l->box)));
+  ptrdiff_t cells = 0;
+  for (ptrdiff_t v = 0; v < l->rows; ++v)
+    CF_TILE_ROWS (l, v, j, k)
+      CF_TILE_RUNS (l, v, run)
+        for (ptrdiff_t p = cf_box_at(&l->box, run->low, j, k), end = p + run->high - run->low; p < end; ++p) {
+          cells += cf_coupled_has(l, p);
+          if (q->united[q->label[p]] >= 0) q->cells[q->united[q->label[p]]] += 1;
+        }
+  q->widest = 0;
+  for (int v = 1; v < q->count; ++v)
+    if (q->cells[v] > q->cells[q->widest]) q->widest = v;
+  q->single = q->count == 1 && q->cells[0] == (double)cells;
+  CF_PARALLEL_COUPLED (l, v)
+    CF_TILE_ROWS (l, v, j, k) {
+      bool plain = true;
+      CF_TILE_RUNS (l, v, run)
+        for (ptrdiff_t p = cf_box_at(&l->box, run->low, j, k), end = p + run->high - run->low; p < end; ++p)
+          plain = plain && (!cf_coupled_has(l, p) || q->united[q->label[p]] == q->widest);
+      q->plain[j + (ptrdiff_t)l->box.n[1] * k] = plain;
+    }
+  return CF_OK;
+}
+
 cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, const bool loose) {
   q->count = 0;
   if (q->label == NULL) {
@@ -127,55 +158,27 @@ cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, const bool loose) 
     CF_TILE_ROWS (l, v, j, k)
       CF_TILE_RUNS (l, v, run) unite_run(q, l, run, (int[]){0, j, k});
   CF_TRY(number_pockets(q, l, loose));
-  ptrdiff_t fixed_cells = 0;
-  for (ptrdiff_t v = 0; v < l->rows; ++v)
-    CF_TILE_ROWS (l, v, j, k)
-      CF_TILE_RUNS (l, v, run)
-        for (int i = run->low; i < run->high; ++i) {
-          const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
-          if (q->united[q->label[p]] >= 0)
-            q->cells[q->united[q->label[p]]] += 1;
-          else
-            fixed_cells += cf_coupled_has(l, p);
-        }
-  q->single = q->count == 1 && fixed_cells == 0;
-  return CF_OK;
+  return count_cells(q, l);
 }
 
 /* --- means -------------------------------------------------------------------------------------------- */
 
+/* Adds to 8 lanes what f is where a cell has an equation. */
 CF_CLONES static void add_run(const int n, const float *inverse, const cf_real *f,
                               double lane[CF_SUM_LANES]) {
-  double sum[CF_SUM_LANES], value[CF_SUM_LANES];
-  memcpy(sum, lane, sizeof sum);
-  for (int i = 0; i < n; i += CF_SUM_LANES) {
-    const int lanes = CF_MIN(CF_SUM_LANES, n - i);
-    for (int m = 0; m < CF_SUM_LANES; ++m) value[m] = 0;
-    CF_ROW_LOOP
-    for (int m = 0; m < lanes; ++m) value[m] = inverse[i + m] > 0 ? (double)f[i + m] : 0;
-    for (int m = 0; m < CF_SUM_LANES; ++m) sum[m] += value[m];
+  cf_eight sum = CF_EIGHT_OF_DOUBLES(lane);
+  int i = 0;
+  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES) {
+    const cf_eight_bits has = (cf_eight_bits)(CF_EIGHT_OF_FLOATS(inverse + i) > 0);
+    sum += (cf_eight)((cf_eight_bits)CF_EIGHT_OF(f + i) & has);
   }
-  memcpy(lane, sum, sizeof sum);
+  memcpy(lane, &sum, sizeof sum);
+  for (int m = 0; i < n; ++i, ++m) lane[m] += inverse[i] > 0 ? (double)f[i] : 0;
 }
 
 CF_CLONES static void shift_run(const int n, const float *inverse, const double by, cf_real *f) {
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) f[i] = inverse[i] > 0 ? (cf_real)((double)f[i] - by) : f[i];
-}
-
-/* All cells that have an equation, row after row. */
-static double sum_of_all(const cf_coupled *l, const cf_cell f) {
-  double sum = 0;
-  for (ptrdiff_t v = 0; v < l->rows; ++v)
-    CF_TILE_ROWS (l, v, j, k) {
-      double lane[CF_SUM_LANES] = {0};
-      CF_TILE_RUNS (l, v, run) {
-        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
-        add_run(run->high - run->low, l->inverse + p, f.at + p, lane);
-      }
-      sum += cf_sum_lanes(lane);
-    }
-  return sum;
 }
 
 /* Cells from p on, before `end`, that have the label of cell p: a run of them has one pocket. */
@@ -185,41 +188,62 @@ static ptrdiff_t alike(const int32_t *label, const ptrdiff_t p, const ptrdiff_t 
   return to;
 }
 
-static void sum_up(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
-  if (q->single) {
-    q->sum[0] = sum_of_all(l, f);
-    return;
-  }
-  for (int v = 0; v < q->count; ++v) q->sum[v] = 0;
-  for (ptrdiff_t v = 0; v < l->rows; ++v)
-    CF_TILE_ROWS (l, v, j, k)
+/* What rows of the widest pocket sum to. */
+static void sum_rows(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
+  CF_PARALLEL_COUPLED (l, v)
+    CF_TILE_ROWS (l, v, j, k) {
+      double lane[CF_SUM_LANES] = {0};
+      if (!q->plain[j + (ptrdiff_t)l->box.n[1] * k]) continue;
       CF_TILE_RUNS (l, v, run) {
-        const ptrdiff_t row = cf_box_at(&l->box, 0, j, k), end = row + run->high;
-        for (ptrdiff_t p = row + run->low, to; p < end; p = to) {
-          to = alike(q->label, p, end);
+        const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
+        add_run(run->high - run->low, l->inverse + p, f.at + p, lane);
+      }
+      q->rows[j + (ptrdiff_t)l->box.n[1] * k] = cf_sum_lanes(lane);
+    }
+}
+
+/* The rows of other pockets are summed run by run; all are added in the order of rows, whatever tiles they are on. */
+static void sum_up(const cf_pockets *q, const cf_coupled *l, const cf_cell f) {
+  sum_rows(q, l, f);
+  for (int v = 0; v < q->count; ++v) q->sum[v] = 0;
+  for (int k = l->low[2]; k < l->high[2]; ++k)
+    for (int j = l->low[1]; j < l->high[1]; ++j) {
+      const cf_tile_row *row = cf_coupled_row_at(l, j, k);
+      const ptrdiff_t number = j + (ptrdiff_t)l->box.n[1] * k, at = cf_box_at(&l->box, 0, j, k);
+      if (row == NULL) continue;
+      if (q->plain[number]) q->sum[q->widest] += q->rows[number];
+      for (ptrdiff_t r = row->run; r < row->run_end && !q->plain[number]; ++r)
+        for (ptrdiff_t p = at + l->run[r].low, to; p < at + l->run[r].high; p = to) {
+          to = alike(q->label, p, at + l->run[r].high);
           const int32_t pocket = q->united[q->label[p]];
           double sum = 0;
           for (ptrdiff_t c = p; c < to && pocket >= 0; ++c) sum += (double)f.at[c];
           if (pocket >= 0) q->sum[pocket] += sum;
         }
-      }
+    }
+}
+
+/* How far a pocket is from the mean kept, or from 0. */
+static double excess_of(const cf_pockets *q, const int32_t pocket, const bool kept) {
+  return q->sum[pocket] / q->cells[pocket] - (kept ? q->mean[pocket] : 0);
 }
 
 /* f -= (sum - kept)/cells on every pocket. */
 static void shift(const cf_pockets *q, const cf_coupled *l, const bool kept, const cf_cell f) {
-  if (q->single) {
-    cf_pockets_lift(l, (kept ? q->mean[0] : 0) - q->sum[0] / q->cells[0], f);
-    return;
-  }
   CF_PARALLEL_COUPLED (l, v)
     CF_TILE_ROWS (l, v, j, k)
       CF_TILE_RUNS (l, v, run) {
         const ptrdiff_t row = cf_box_at(&l->box, 0, j, k), end = row + run->high;
-        for (ptrdiff_t p = row + run->low, to; p < end; p = to) {
+        ptrdiff_t p = row + run->low;
+        if (q->plain[j + (ptrdiff_t)l->box.n[1] * k]) {
+          shift_run(run->high - run->low, l->inverse + p, excess_of(q, q->widest, kept), f.at + p);
+          continue;
+        }
+        for (ptrdiff_t to; p < end; p = to) {
           to = alike(q->label, p, end);
           const int32_t pocket = q->united[q->label[p]];
           if (pocket < 0) continue;
-          const double by = q->sum[pocket] / q->cells[pocket] - (kept ? q->mean[pocket] : 0);
+          const double by = excess_of(q, pocket, kept);
           for (ptrdiff_t c = p; c < to; ++c) f.at[c] = (cf_real)((double)f.at[c] - by);
         }
       }

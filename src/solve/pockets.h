@@ -18,7 +18,11 @@ typedef struct cf_pockets {
   int32_t *label;     /* of every cell, in pages like the level's */
   double *sum, *mean; /* one a pocket (at most as many as labels) */
   double *cells;
-  bool single;      /* there is one pocket, and every cell that has an equation is in it */
+  int32_t widest; /* the pocket with the most cells; most rows of a region have cells of no other: */
+  unsigned char
+      *plain;   /* whether row j + n[1] k is such a row: all of its cells that have an equation are in it */
+  double *rows; /* then what the row sums to */
+  bool single;  /* there is one pocket, and every cell that has an equation is in it */
   int64_t followed; /* the update of the tiles that the labels are right for */
 } cf_pockets;
 

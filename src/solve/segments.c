@@ -30,7 +30,6 @@ void cf_segments_destroy(cf_segments *g) {
   cf_free(g->number);
   cf_free(g->segment);
   cf_free(g->inverse);
-  cf_free(g->diagonal);
   cf_free(g->faces);
   cf_free(g->held);
   for (int a = 0; a < 3; ++a) cf_free(g->weight[a]);
@@ -195,13 +194,10 @@ static cf_status make_room(cf_segments *g) {
   if (g->elements <= g->elements_room) return CF_OK;
   const ptrdiff_t room = g->elements + g->elements / 4;
   g->elements_room = 0;
-  float **floats[] = {&g->inverse, &g->diagonal};
   unsigned char **bytes[] = {&g->faces, &g->held, &g->weight[0], &g->weight[1], &g->weight[2]};
-  for (int v = 0; v < 2; ++v) {
-    cf_free(*floats[v]);
-    *floats[v] = NULL;
-    CF_TRY(CF_NEW(floats[v], room));
-  }
+  cf_free(g->inverse);
+  g->inverse = NULL;
+  CF_TRY(CF_NEW(&g->inverse, room));
   for (int v = 0; v < 5; ++v) {
     cf_free(*bytes[v]);
     *bytes[v] = NULL;
@@ -217,7 +213,7 @@ static void fill_cell(const finding *f, const int at[3], const ptrdiff_t entry) 
   const cf_split *s = f->s;
   const cf_box *b = &f->r->grid.box;
   const ptrdiff_t p = cf_box_at(b, at[0], at[1], at[2]);
-  g->inverse[entry] = g->diagonal[entry] = 0;
+  g->inverse[entry] = 0;
   g->faces[entry] = g->held[entry] = 0;
   for (int a = 0; a < 3; ++a) g->weight[a][entry] = 0;
   if (at[0] >= s->n[0] || f->r->kind[p] != CF_CELL_INSIDE) return;
@@ -240,8 +236,7 @@ static void fill_cell(const finding *f, const int at[3], const ptrdiff_t entry) 
     }
   const float diagonal = s->alpha + (float)(open + held) * s->coupling;
   g->faces[entry] = (unsigned char)faces;
-  g->held[entry] = (unsigned char)held;
-  g->diagonal[entry] = diagonal;
+  g->held[entry] = (unsigned char)(held + CF_HELD_COUNT * (open + held));
   g->inverse[entry] = diagonal > 0 ? 1 / diagonal : 0;
 }
 
@@ -259,7 +254,7 @@ static void fill_tables(const finding *f) {
         for (int i = 2 * q->from; i < 2 * q->to; ++i) {
           const ptrdiff_t entry = cf_segment_entry(q, i & 1, i / 2);
           fill_cell(f, (int[]){i, j, k}, entry);
-          any |= g->held[entry];
+          any |= g->held[entry] & CF_HELD_MASK;
         }
       }
     }

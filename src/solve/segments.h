@@ -6,7 +6,7 @@
  *     row (j, k):   ..........[ plain  ][  edge  ][  edge  ].......[ edge ]..........
  *
  * In a plain segment every cell is inside and has only neighbours inside or a wall of the box, so it is worked on as
- * a row of the whole box is. Cells of an edge segment have what differs from cell to cell in tables: the diagonal, which
+ * a row of the whole box is. Cells of an edge segment have what differs from cell to cell in tables: 1/diagonal, which
  * faces are open, and how they take part in the transfers. e and r are 0 where there is no cell inside, hence sums over
  * neighbours need no asking for faces; only differences do.
  *
@@ -26,6 +26,11 @@
   64 /* the cell takes part in restriction and interpolation as others of its block do */
 #define CF_FACES_INSIDE 128
 
+/* What cf_segments.held holds: what known values add to the diagonal, in couplings (2 a face), and CF_HELD_COUNT times all that it
+ * has besides alpha. */
+#define CF_HELD_MASK  15
+#define CF_HELD_COUNT 16
+
 typedef struct cf_segment {
   int from, to;  /* elements of halves */
   int low, high; /* cells: from the first one inside to the last */
@@ -41,8 +46,8 @@ typedef struct cf_segments {
   ptrdiff_t *number;            /* of that row among those that have segments */
   cf_segment *segment;
   ptrdiff_t elements, elements_room; /* of tables */
-  float *inverse, *diagonal;         /* 1/diagonal (0: no cell inside), the diagonal */
-  unsigned char *faces, *held;       /* held: what known values add to the diagonal, in couplings: 2 a face */
+  float *inverse;                    /* 1/diagonal (0: no cell inside) */
+  unsigned char *faces, *held;       /* see above */
   bool any_held;                     /* some known value holds a cell of an edge segment */
   unsigned char *weight[3];          /* of interpolation, in units of 1/256 (coupled.h) */
 } cf_segments;
@@ -61,6 +66,11 @@ const cf_segment *cf_segments_at(const cf_segments *g, const cf_split *s, int j,
 /* Where an edge segment has element m of a half (parity 0: even). */
 static inline ptrdiff_t cf_segment_entry(const cf_segment *q, const int parity, const int m) {
   return q->table + (parity ? q->to - q->from : 0) + m - q->from;
+}
+
+/* The diagonal of a cell of an edge segment. */
+static inline float cf_segment_diagonal(const float alpha, const float coupling, const unsigned char held) {
+  return alpha + (float)(held / CF_HELD_COUNT) * coupling;
 }
 
 static inline ptrdiff_t cf_segments_row(const cf_split *s, const int j, const int k) {

@@ -5,6 +5,7 @@
 #ifndef CF_SOLVE_STAGES_APPLY_H
 #define CF_SOLVE_STAGES_APPLY_H
 
+#include "solve/segments.h"
 #include "solve/stages_part.h"
 
 /* What an axis adds to A' e where its couplings differ: the smaller one times the second difference, and the rest. */
@@ -26,7 +27,7 @@ CF_KERNEL float cf_applied_at_edge(const int dim, const cf_half *h, const int m)
     const float z[2] = {c - e[h->z[0]], e[h->z[1]] - c};
     sum += (faces & 16 ? z[0] : 0) - (faces & 32 ? z[1] : 0);
   }
-  return h->alpha * c + h->coupling * (sum + (float)h->held[m] * c);
+  return h->alpha * c + h->coupling * (sum + (float)(h->held[m] & CF_HELD_MASK) * c);
 }
 
 /* A' e from second differences, which are exact in single precision where e is smooth. inner 1: no wall in y and z; 2: on
@@ -67,7 +68,8 @@ CF_KERNEL void cf_last_half(const int dim, const int inner, const cf_half *of, c
   CF_FOR_PIECE(m, t) {
     const float residual = h.r[m] - cf_applied(dim, inner, &h, m);
     const float old = h.e[m], fresh = old + omega * h.inverse[m] * residual;
-    h.r[m] = cf_stepped(step, h.r[m], residual - h.diagonal[m] * (fresh - old));
+    const float diagonal = inner == 2 ? cf_segment_diagonal(h.alpha, h.coupling, h.held[m]) : h.diagonal[m];
+    h.r[m] = cf_stepped(step, h.r[m], residual - diagonal * (fresh - old));
     h.e[m] = fresh;
   }
 }

@@ -41,7 +41,6 @@ CF_KERNEL cf_half half_of(const int dim, const cf_split *s, const piece *q, cons
   if (q->edge) {
     const ptrdiff_t entry = cf_segment_entry(q->segment, h.parity, 0);
     h.inverse = s->segments->inverse + entry;
-    h.diagonal = s->segments->diagonal + entry;
     h.faces = s->segments->faces + entry;
     h.held = s->segments->held + entry;
   }
@@ -238,19 +237,19 @@ CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const 
 /* --- FORM --------------------------------------------------------------------------------------------- */
 
 /* Eight cells' faces, a number each. */
-typedef int64_t eight_faces __attribute__((vector_size(CF_SUM_LANES * sizeof(int64_t))));
 typedef unsigned char eight_bytes __attribute__((vector_size(CF_SUM_LANES), aligned(1), may_alias));
 
-#define EIGHT_OF_BYTES(p) __builtin_convertvector(*(const eight_bytes *)(p), eight_faces)
+#define EIGHT_OF_BYTES(p) __builtin_convertvector(*(const eight_bytes *)(p), cf_eight_bits)
 
 /* The values of those cells that have this bit, 0 for the others, whatever theirs are. */
-#define WHERE(faces, bit, value) ((cf_eight)((eight_faces)(value) & (((faces) & (bit)) != 0)))
+#define WHERE(faces, bit, value) ((cf_eight)((cf_eight_bits)(value) & (((faces) & (bit)) != 0)))
 
 CF_KERNEL void form_eight_at_edge(const int dim, const cf_forming *f, const double coupling, const int i,
                                   const unsigned char *faces, const unsigned char *held) {
   const cf_real *x = f->x + i;
-  const eight_faces open = EIGHT_OF_BYTES(faces + i);
-  const cf_eight c = CF_EIGHT_OF(x), known = __builtin_convertvector(EIGHT_OF_BYTES(held + i), cf_eight);
+  const cf_eight_bits open = EIGHT_OF_BYTES(faces + i);
+  const cf_eight c = CF_EIGHT_OF(x),
+                 known = __builtin_convertvector(EIGHT_OF_BYTES(held + i) & CF_HELD_MASK, cf_eight);
   cf_eight sum = WHERE(open, 1, c - CF_EIGHT_OF(x - 1)) - WHERE(open, 2, CF_EIGHT_OF(x + 1) - c);
   sum += WHERE(open, 4, c - CF_EIGHT_OF(x - f->y)) - WHERE(open, 8, CF_EIGHT_OF(x + f->y) - c);
   if (dim == 3)
@@ -266,7 +265,9 @@ CF_KERNEL double form_one_at_edge(const int dim, const cf_forming *f, const doub
   double sum = (open & 1 ? c - (double)x[-1] : 0) - (open & 2 ? (double)x[1] - c : 0);
   sum += (open & 4 ? c - (double)x[-f->y] : 0) - (open & 8 ? (double)x[f->y] - c : 0);
   if (dim == 3) sum += (open & 16 ? c - (double)x[-f->z] : 0) - (open & 32 ? (double)x[f->z] - c : 0);
-  return open & CF_FACES_INSIDE ? (double)f->b[i] - (f->alpha * c + coupling * (sum + (double)held * c)) : 0;
+  return open & CF_FACES_INSIDE
+             ? (double)f->b[i] - (f->alpha * c + coupling * (sum + (double)(held & CF_HELD_MASK) * c))
+             : 0;
 }
 
 CF_KERNEL void form_edge(const int dim, const int n, const cf_forming *f, const double coupling,
@@ -320,13 +321,15 @@ CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
 
 /* What a piece of a fine row leaves to its coarse cells: of its red ones, since the black half sweep before, with omega = 1, has
  * left nothing on the others. */
-CF_KERNEL void gather(const int dim, const cf_split *s, const piece *q, float *coarse) {
+CF_KERNEL void gather(const int dim, const int edge, const cf_split *s, const piece *q, float *coarse) {
   const cf_half red = half_of(dim, s, q, 0);
   const int end = CF_MIN(q->strip.to, s->half[red.parity]);
   CF_ROW_LOOP
   for (int m = q->strip.from; m < end; ++m) {
-    const float rest = (red.r[m] - red.diagonal[m] * red.e[m]) + cf_around(dim, 1, &red, m);
-    coarse[m] += !q->edge || red.faces[m] & CF_FACES_TRANSFER ? rest : 0;
+    const float diagonal = edge ? cf_segment_diagonal(red.alpha, red.coupling, red.held[m]) : red.diagonal[m];
+    const float rest = (red.r[m] - diagonal * red.e[m]) + cf_around(dim, 1, &red, m);
+    const float part = edge ? (float)(red.faces[m] & CF_FACES_TRANSFER) * (1.0f / CF_FACES_TRANSFER) : 1;
+    coarse[m] += edge ? part * rest : rest;
   }
 }
 
@@ -342,8 +345,10 @@ CF_KERNEL void restrict_row(const int dim, const cf_pass *p, const cf_strip *t, 
         cf_strip there = *t;
         there.k = k;
         FOR_PIECES(s, &there, jj, q) {
-          if (gathering)
-            gather(dim, s, &q, coarse);
+          if (gathering && q.edge)
+            gather(dim, 1, s, &q, coarse);
+          else if (gathering)
+            gather(dim, 0, s, &q, coarse);
           else
             memset(coarse + q.strip.from, 0,
                    (size_t)(CF_MIN(q.strip.to, c->n[0]) - q.strip.from) * sizeof(float));
@@ -427,12 +432,32 @@ CF_KERNEL void spread_edge(const int dim, const cf_segments *g, const piece *q, 
   }
 }
 
+CF_KERNEL void fetch(const void *from, const ptrdiff_t bytes) {
+  for (ptrdiff_t v = 0; v < bytes; v += CF_ALIGN) __builtin_prefetch((const char *)from + v);
+}
+
+/* Asks for the tables of the row that the strip's successor has for row j: they are read once a pass. */
+CF_KERNEL void fetch_tables(const int dim, const cf_split *s, const cf_strip *t, const int j) {
+  const cf_segments *g = s->segments;
+  const ptrdiff_t row = cf_segments_row(s, t->next_j + j - t->j, t->next_k);
+  for (ptrdiff_t v = g->first[row]; v < g->first[row + 1]; ++v) {
+    const cf_segment *q = &g->segment[v];
+    const ptrdiff_t n = 2 * (q->to - q->from), at = q->table;
+    if (at < 0) continue;
+    fetch(g->inverse + at, n * (ptrdiff_t)sizeof(float));
+    fetch(g->faces + at, n);
+    fetch(g->held + at, n);
+    for (int a = 0; a < dim; ++a) fetch(g->weight[a] + at, n);
+  }
+}
+
 CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t) {
   const cf_split *s = p->at;
   float *line = t->scratch;
   piece q;
   CF_FOR_ROWS(j, t) {
     const mixture x = mixture_of(dim, p, j, t->k);
+    if (t->next_k >= 0) fetch_tables(dim, s, t, j);
     FOR_PIECES(s, t, j, q) {
       if (t->next_k >= 0) {
         cf_fetch_halves(s, &q.strip, s->e + cf_next_row(s, t, j));
