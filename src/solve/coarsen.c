@@ -6,6 +6,7 @@
 #include "solve/amend.h"
 #include "solve/block.h"
 #include "solve/odds.h"
+#include "solve/open.h"
 
 cf_status cf_coarsen_create(const cf_coupled *l, cf_coupled *coarse) {
   int n[3];
@@ -243,6 +244,7 @@ cf_status cf_coarsen_follow(const cf_coupled *l, cf_coupled *coarse) {
 }
 
 cf_status cf_coarsen(cf_coupled *l, cf_coupled *coarse, const cf_part *w) {
+  if (cf_open_coarsen(l, coarse)) return CF_OK;
   CF_TRY(cf_odds_find(l, coarse, w));
   bool all = true;
   for (int a = 0; a < l->dim; ++a) all = all && (l->coarsened[a] || l->box.n[a] == 1);

@@ -75,6 +75,8 @@ typedef struct cf_coupled {
   float *odd_value;
   int32_t *odd_island; /* 0: has a parent, or the number of the island */
 
+  bool is_open;        /* no face is closed but walls of the box (open.h), */
+  bool is_fixed;       /* ... and some alpha or known value fixes the level of the solution */
   bool is_gentle;      /* alpha holds some cells so much that they must not be over-relaxed */
   bool has_band;       /* some face is closed or held */
   unsigned char *band; /* of row j + n[1] k: whether it has cells at such a face, or beside one that is */

@@ -75,6 +75,25 @@ static void unite_run(const cf_pockets *q, const cf_coupled *l, const cf_run *ru
   }
 }
 
+/* Room for what is known of each. */
+static cf_status pockets_room(cf_pockets *q) {
+  cf_free(q->sum);
+  cf_free(q->mean);
+  cf_free(q->cells);
+  q->sum = q->mean = q->cells = NULL;
+  CF_TRY(CF_NEW(&q->sum, q->count));
+  CF_TRY(CF_NEW(&q->mean, q->count));
+  return CF_NEW(&q->cells, q->count);
+}
+
+cf_status cf_pockets_take_all(cf_pockets *q, const cf_coupled *l) {
+  q->count = 1;
+  q->single = true;
+  CF_TRY(pockets_room(q));
+  q->cells[0] = (double)cf_box_cells(&l->box);
+  return CF_OK;
+}
+
 /* The parts whose diagonal is made of couplings alone become pockets; united: from a label to its pocket or -1. */
 static cf_status number_pockets(cf_pockets *q, const cf_coupled *l, const bool loose) {
   bool *fixed;
@@ -98,13 +117,7 @@ static cf_status number_pockets(cf_pockets *q, const cf_coupled *l, const bool l
       number[v] = number[root];
   }
   cf_free(fixed);
-  cf_free(q->sum);
-  cf_free(q->mean);
-  cf_free(q->cells);
-  q->sum = q->mean = q->cells = NULL;
-  CF_TRY(CF_NEW(&q->sum, q->count));
-  CF_TRY(CF_NEW(&q->mean, q->count));
-  return CF_NEW(&q->cells, q->count);
+  return pockets_room(q);
 }
 
 /* How many cells pockets have, which one has the most, and which rows have cells of no other. */

@@ -28,7 +28,8 @@ typedef struct cf_pockets {
 
 /* The parts that nothing fixes; `loose`: those as well that alpha alone fixes. CF_NO_MEMORY. */
 cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, bool loose);
-void cf_pockets_clear(cf_pockets *q, const cf_coupled *l); /* a zeroed one is fine */
+cf_status cf_pockets_take_all(cf_pockets *q, const cf_coupled *l); /* the whole box is one */
+void cf_pockets_clear(cf_pockets *q, const cf_coupled *l);         /* a zeroed one is fine */
 
 /* Subtracts from f its mean over every pocket. */
 void cf_pockets_remove_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);

@@ -235,6 +235,12 @@ static cf_status make_levels(cf_varied *v, const cf_coefficients *c, const bool 
   return is_eliminated(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;
 }
 
+static cf_status find_pockets(cf_varied *v) {
+  const cf_coupled *l = &v->level[0];
+  if (!l->is_open) return cf_pockets_find(&v->pockets, l, false);
+  return l->is_fixed ? CF_OK : cf_pockets_take_all(&v->pockets, l);
+}
+
 cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficients *c) {
   /* the levels stand, but for what has changed in the region */
   const bool stands = are_numbers_in_region(c) && v->stamp != 0 && v->region == c->region &&
@@ -274,7 +280,7 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
     CF_TRY(cf_renewal_take(&v->renewal, &v->level[0], c->region));
   CF_TRY(make_levels(v, c, all));
   v->pockets.count = 0;
-  if (!(least > 0)) CF_TRY(cf_pockets_find(&v->pockets, &v->level[0], false));
+  if (!(least > 0)) CF_TRY(find_pockets(v));
   v->stamp = are_numbers_in_region(c) ? c->region->stamp : 0;
   return CF_OK;
 }

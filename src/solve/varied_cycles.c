@@ -180,7 +180,7 @@ static ptrdiff_t bytes_of(const cf_varied *v) {
 }
 
 bool cf_varied_can_cycle(const cf_varied *v) {
-  return v->region == NULL && v->depth > 1 && !v->level[0].has_band;
+  return v->depth > 1 && v->level[0].is_open;
 }
 
 double cf_varied_run_cycles(const cf_varied *v, const cf_cell b, const double bb, const double enough,

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "solve/varied_part.h"
+#include "solve/open.h"
 
 /* What a level is filled from. */
 typedef struct filling {
@@ -201,6 +201,7 @@ void cf_varied_find_range(const cf_varied *v, const cf_coefficients *c, double *
 cf_status cf_varied_fill(cf_varied *v, const cf_coefficients *c, const cf_part *w) {
   const filling f = {v, c, v->scale, 1 / (v->A->grid.h * v->A->grid.h)};
   cf_coupled *l = &v->level[0];
+  if (cf_open_fill(v, c)) return CF_OK;
   CF_PARALLEL_PART (l, w, r)
     CF_TILE_ROWS (w, r, j, k)
       CF_TILE_RUNS (w, r, run) fill_run(&f, run, j, k);

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Fields for coefficients where nothing is closed: levels made whole rows at a time against the same ones made cell by cell,
+ * which a region that has every cell inside asks for; and stationary cycles.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "solve/multigrid.h"
+#include "solve/varied_part.h"
+#include "solve_case.h"
+
+/* Couplings in series are formed in another way, and a weight may fall on the other side of a half. */
+enum { WEIGHT_APART = 1 };
+#define APART 2e-6
+
+static void compare_floats(const cf_coupled *l, const float *a, const float *b, const char *what) {
+  for (ptrdiff_t r = 0; r < cf_box_rows(&l->box); ++r)
+    for (int i = 0; i < l->box.n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(&l->box, r) + i;
+      if (!(fabs((double)a[p] - (double)b[p]) <= APART * fabs((double)b[p])))
+        fail_msg("%s at %d of row %td of %d cells: %.9g, cell by cell %.9g", what, i, r, l->box.n[0],
+                 (double)a[p], (double)b[p]);
+    }
+}
+
+static void compare_weights(const cf_coupled *l, const unsigned char *a, const unsigned char *b) {
+  for (ptrdiff_t r = 0; r < cf_box_rows(&l->box); ++r)
+    for (int i = 0; i < l->box.n[0]; ++i) {
+      const ptrdiff_t p = cf_box_row(&l->box, r) + i;
+      if (abs(a[p] - b[p]) > WEIGHT_APART)
+        fail_msg("weight at %d of row %td of %d cells: %d, cell by cell %d", i, r, l->box.n[0], a[p], b[p]);
+    }
+}
+
+static void compare(const cf_varied *fast, const cf_varied *slow) {
+  assert_int_equal(fast->depth, slow->depth);
+  for (int at = 0; at < fast->depth; ++at) {
+    const cf_coupled *l = &fast->level[at], *m = &slow->level[at];
+    assert_false(m->is_open);
+    assert_int_equal(l->is_gentle, m->is_gentle);
+    assert_int_equal(l->has_band, m->has_band);
+    compare_floats(l, l->free, m->free, "free");
+    compare_floats(l, l->held, m->held, "held");
+    compare_floats(l, l->inverse, m->inverse, "1/diagonal");
+    for (int a = 0; a < l->dim; ++a) {
+      compare_floats(l, l->c[a], m->c[a], "coupling");
+      if (at + 1 < fast->depth) compare_weights(l, l->weight[a], m->weight[a]);
+    }
+  }
+}
+
+static cf_coefficients coefficients_of(const solve_setup *s, const solve_case *c, const cf_region *region) {
+  return (cf_coefficients){.alpha = isinf(c->sigma) ? 0 : 1,
+                           .alpha_at = c->alpha_varies ? &s->alpha : NULL,
+                           .beta_at = &s->beta,
+                           .region = region};
+}
+
+/* Returns how many levels below the finest one were made whole rows at a time. */
+static int same_levels(const solve_case *c) {
+  solve_setup fast, slow;
+  cf_region *region;
+  int open = 0;
+  case_begin(c, &fast);
+  case_begin(c, &slow);
+  OK(cf_region_create(&region, &slow.g));
+  OK(cf_region_update(region));
+  const cf_coefficients all = coefficients_of(&slow, c, region);
+  OK(cf_helmholtz_set(slow.A, &all));
+  compare(fast.A->varied, slow.A->varied);
+  assert_true(fast.A->varied->level[0].is_open);
+  for (int at = 1; at < fast.A->varied->depth; ++at) open += fast.A->varied->level[at].is_open;
+  cf_region_destroy(region);
+  case_end(&fast);
+  case_end(&slow);
+  return open;
+}
+
+static void rows_make_the_levels_that_cells_make(void **state) {
+  (void)state;
+  static const int n[][3] = {{32, 32, 1},  {48, 20, 1},  {64, 4, 1},  {17, 64, 1},  {600, 12, 1},
+                             {16, 16, 16}, {32, 12, 20}, {24, 8, 40}, {20, 33, 16}, {4, 4, 64}};
+  static const char *const walls[] = {"iii", "oio", "ppp", "iop", "pih"};
+  int open = 0;
+  for (int q = 0; q < 10; ++q)
+    for (int w = 0; w < 5; ++w)
+      for (int beta = BETA_SMOOTH; beta <= BETA_BLOCKS; ++beta) {
+        solve_case c = {.dim = q < 5 ? 2 : 3, .n = {n[q][0], n[q][1], n[q][2]}, .walls = walls[w]};
+        c.sigma = beta == BETA_SMOOTH ? INFINITY : 30;
+        c.beta = (case_beta)beta;
+        c.alpha_varies = w % 2 && isfinite(c.sigma);
+        c.threads = 1 + w % 3;
+        open += same_levels(&c);
+      }
+  assert_true(open > 150);
+  print_message("%d levels below the finest one\n", open);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rows_make_the_levels_that_cells_make),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
