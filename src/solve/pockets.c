@@ -76,11 +76,13 @@ static void unite_run(const cf_pockets *q, const cf_coupled *l, const cf_run *ru
 }
 
 /* Room for what is known of each. */
-static cf_status pockets_room(cf_pockets *q) {
+static cf_status pockets_room(cf_pockets *q, const cf_coupled *l) {
   cf_free(q->sum);
   cf_free(q->mean);
   cf_free(q->cells);
   q->sum = q->mean = q->cells = NULL;
+  if (q->plain == NULL) CF_TRY(CF_NEW(&q->plain, cf_box_rows(&l->box)));
+  if (q->rows == NULL) CF_TRY(CF_NEW(&q->rows, cf_box_rows(&l->box)));
   CF_TRY(CF_NEW(&q->sum, q->count));
   CF_TRY(CF_NEW(&q->mean, q->count));
   return CF_NEW(&q->cells, q->count);
@@ -89,8 +91,10 @@ static cf_status pockets_room(cf_pockets *q) {
 cf_status cf_pockets_take_all(cf_pockets *q, const cf_coupled *l) {
   q->count = 1;
   q->single = true;
-  CF_TRY(pockets_room(q));
+  q->widest = 0;
+  CF_TRY(pockets_room(q, l));
   q->cells[0] = (double)cf_box_cells(&l->box);
+  for (ptrdiff_t r = 0; r < cf_box_rows(&l->box); ++r) q->plain[r] = true;
   return CF_OK;
 }
 
@@ -117,14 +121,12 @@ static cf_status number_pockets(cf_pockets *q, const cf_coupled *l, const bool l
       number[v] = number[root];
   }
   cf_free(fixed);
-  return pockets_room(q);
+  return pockets_room(q, l);
 }
 
 /* How many cells pockets have, which one has the most, and which rows have cells of no other. */
 static cf_status count_cells(cf_pockets *q, const cf_coupled *l) {
   if (q->count == 0) return CF_OK;
-  if (q->plain == NULL) CF_TRY(CF_NEW(&q->plain, cf_box_rows(&l->box)));
-  if (q->rows == NULL) CF_TRY(CF_NEW(&q->rows, cf_box_rows(&l->box)));
   ptrdiff_t cells = 0;
   for (ptrdiff_t v = 0; v < l->rows; ++v)
     CF_TILE_ROWS (l, v, j, k)
