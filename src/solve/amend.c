@@ -1,19 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 #include "solve/amend.h"
 
-/* A coupling next to a reentrant corner over what its cells tell. */
-#define AT_CORNER 1.1f
-
 /* Factors of the couplings through the low faces of axis a. A face is next to a corner where of the two cells beside it
  * one can be left sideways and the other cannot. */
 CF_KERNEL void find_row(const int dim, const int n, const cf_coupled *l, const ptrdiff_t p, const int a,
                         float *factor) {
+  const float at_corner = 1 + l->excess[2];
   for (int i = 0; i < n; ++i) factor[i] = 1;
   for (int e = 0; e < dim; ++e)
     for (int side = 0; side < 2 && e != a; ++side) {
       const float *high = l->c[e] + p + side * l->box.stride[e], *low = high - l->box.stride[a];
       CF_ROW_LOOP
-      for (int i = 0; i < n; ++i) factor[i] *= (high[i] > 0) != (low[i] > 0) ? AT_CORNER : 1;
+      for (int i = 0; i < n; ++i) factor[i] *= (high[i] > 0) != (low[i] > 0) ? at_corner : 1;
     }
 }
 
@@ -44,7 +42,7 @@ CF_CLONES static void scale(const int n, const float by, float *f) {
 void cf_amend(const cf_coupled *l, const cf_coupled *coarse, const cf_part *w) {
   const float alpha = 1 + coarse->excess[0], beta = 1 + coarse->excess[1];
   float *const factor[3] = {coarse->e, coarse->r, coarse->rest};
-  if (!l->has_band && alpha == 1 && beta == 1) return;
+  if ((!l->has_band || coarse->excess[2] == 0) && alpha == 1 && beta == 1) return;
   for (int a = 0; a < l->dim; ++a) cf_coupled_wrap(coarse, coarse->c[a]);
   /* all are looked at before any is changed */
   CF_PARALLEL_PART (coarse, w, v)

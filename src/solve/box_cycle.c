@@ -20,7 +20,7 @@
 #define COARSE_SWEEPS_W 2
 /* Sweeps over rows at edges after the coarse correction, over-relaxed. */
 #define EDGE_SWEEPS 2
-#define EDGE_OMEGA  1.25
+#define EDGE_OMEGA  1.35
 /* A pass of half sweeps alone gains at most this, and has at most so many of them. */
 #define PASS_GAIN   1e-7
 #define PASS_SWEEPS 32

@@ -65,8 +65,9 @@ typedef struct cf_coupled {
   float *inverse, *free, *held; /* 1/diagonal (0: no equation) and its parts */
   float *c[3];                  /* couplings on low faces */
   unsigned char *weight[3];     /* of interpolation from the next level */
-  float excess[2];              /* by what share alpha and beta differ from those of its cells (amend.h) */
-  unsigned char *mark;          /* bits, for those who make levels; written only where they change */
+  float excess
+      [3]; /* by what share alpha, beta, and couplings at corners differ from what blocks tell (amend.h) */
+  unsigned char *mark; /* bits, for those who make levels; written only where they change */
 
   /* Cells whose parent is not the coarse cell around them (coarsen.h), and islands: pieces of a block coupled to nothing
    * else, whose constant is solved for by itself. They take no part in the sweeps of restriction and interpolation. In

@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "grid/halo.h"
+#include "solve/amend.h"
 #include "solve/held.h"
 #include "solve/setting.h"
 #include "solve/varied_part.h"
@@ -230,6 +231,7 @@ static cf_status make_levels(cf_varied *v, const cf_coefficients *c, const bool 
     CF_TRY(next_part(v, at, all, &w));
     coarse->excess[0] = at == 1 ? v->excess[0] : 0;
     coarse->excess[1] = at == 1 ? v->excess[1] : 0;
+    coarse->excess[2] = at == 1 ? CF_CORNER_FIRST : CF_CORNER_BELOW;
     CF_TRY(cf_coarsen(l, coarse, &w));
   }
   return is_eliminated(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;

@@ -310,7 +310,7 @@ static void a_slalom_of_plates_costs_little(void **state) {
         scene s;
         scene_begin(&s, dim, dim == 2 ? 96 : 48, 40);
         slalom(&s, plates, thickness);
-        const int most[] = {dim == 2 ? 4 : 3, dim == 2 ? 6 : 5, dim == 2 ? 8 : 6};
+        const int most[] = {dim == 2 ? 4 : 3, dim == 2 ? 6 : 5, dim == 2 ? 8 : 7};
         for (int q = 0; q < 3; ++q) BELOW(iterations(&s, sigmas[q], "slalom"), most[q]);
         scene_end(&s);
       }
