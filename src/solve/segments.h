@@ -28,8 +28,9 @@
 
 /* What cf_segments.held holds: what known values add to the diagonal, in couplings (2 a face), and CF_HELD_COUNT times all that it
  * has besides alpha. */
-#define CF_HELD_MASK  15
-#define CF_HELD_COUNT 16
+#define CF_HELD_BITS  4
+#define CF_HELD_COUNT (1 << CF_HELD_BITS)
+#define CF_HELD_MASK  (CF_HELD_COUNT - 1)
 
 typedef struct cf_segment {
   int from, to;  /* elements of halves */
@@ -66,11 +67,6 @@ const cf_segment *cf_segments_at(const cf_segments *g, const cf_split *s, int j,
 /* Where an edge segment has element m of a half (parity 0: even). */
 static inline ptrdiff_t cf_segment_entry(const cf_segment *q, const int parity, const int m) {
   return q->table + (parity ? q->to - q->from : 0) + m - q->from;
-}
-
-/* The diagonal of a cell of an edge segment. */
-static inline float cf_segment_diagonal(const float alpha, const float coupling, const unsigned char held) {
-  return alpha + (float)(held / CF_HELD_COUNT) * coupling;
 }
 
 static inline ptrdiff_t cf_segments_row(const cf_split *s, const int j, const int k) {

@@ -5,7 +5,6 @@
 #ifndef CF_SOLVE_STAGES_APPLY_H
 #define CF_SOLVE_STAGES_APPLY_H
 
-#include "solve/segments.h"
 #include "solve/stages_part.h"
 
 /* What an axis adds to A' e where its couplings differ: the smaller one times the second difference, and the rest. */
@@ -16,24 +15,8 @@ CF_KERNEL float cf_skewed(const float lo, const float hi, const float below, con
          ((lo - least) * (here - below) - (hi - least) * (above - here));
 }
 
-/* The same on an edge segment, face by face. */
-CF_KERNEL float cf_applied_at_edge(const int dim, const cf_half *h, const int m) {
-  const float *e = h->e + m, *side = h->side + m, c = e[0];
-  const int faces = h->faces[m];
-  const float x[2] = {c - side[0], side[1] - c}, y[2] = {c - e[h->y[0]], e[h->y[1]] - c};
-  float sum = (faces & 1 ? x[0] : 0) - (faces & 2 ? x[1] : 0);
-  sum += (faces & 4 ? y[0] : 0) - (faces & 8 ? y[1] : 0);
-  if (dim == 3) {
-    const float z[2] = {c - e[h->z[0]], e[h->z[1]] - c};
-    sum += (faces & 16 ? z[0] : 0) - (faces & 32 ? z[1] : 0);
-  }
-  return h->alpha * c + h->coupling * (sum + (float)(h->held[m] & CF_HELD_MASK) * c);
-}
-
-/* A' e from second differences, which are exact in single precision where e is smooth. inner 1: no wall in y and z; 2: on
- * an edge segment. */
+/* A' e from second differences, which are exact in single precision where e is smooth. inner: no wall in y and z. */
 CF_KERNEL float cf_applied(const int dim, const int inner, const cf_half *h, const int m) {
-  if (inner == 2) return cf_applied_at_edge(dim, h, m);
   const float *e = h->e + m, *side = h->side + m;
   const float c = e[0], x = (c - side[0]) - (side[1] - c);
   if (inner) {
@@ -68,8 +51,7 @@ CF_KERNEL void cf_last_half(const int dim, const int inner, const cf_half *of, c
   CF_FOR_PIECE(m, t) {
     const float residual = h.r[m] - cf_applied(dim, inner, &h, m);
     const float old = h.e[m], fresh = old + omega * h.inverse[m] * residual;
-    const float diagonal = inner == 2 ? cf_segment_diagonal(h.alpha, h.coupling, h.held[m]) : h.diagonal[m];
-    h.r[m] = cf_stepped(step, h.r[m], residual - diagonal * (fresh - old));
+    h.r[m] = cf_stepped(step, h.r[m], residual - h.diagonal[m] * (fresh - old));
     h.e[m] = fresh;
   }
 }

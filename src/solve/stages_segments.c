@@ -15,6 +15,7 @@
 #include "solve/coupled.h"
 #include "solve/segments.h"
 #include "solve/stages_apply.h"
+#include "solve/stages_edge.h"
 
 /* A piece of a segment: the part of the strip that it takes, and the halves of its row. */
 typedef struct piece {
@@ -110,18 +111,21 @@ CF_KERNEL void last(const int dim, const cf_pass *p, const cf_strip *t, const fl
     FOR_PIECES(s, t, j, q) {
       const cf_half red = half_of(dim, s, &q, 0), black = half_of(dim, s, &q, 1);
       const int from = q.strip.from, n = q.strip.to - from;
+      any = 1;
+      if (q.edge) {
+        products += cf_last_edge(dim, &black, &q.strip, omega, step);
+        cf_clear_pad(s, &q.strip, &black);
+        continue;
+      }
       memcpy(before, black.r + from, (size_t)n * sizeof *before);
-      set_images(s, &q, &black, 1);
-      if (q.edge)
-        cf_last_half(dim, 2, &black, &q.strip, omega, step);
-      else if (cf_half_is_inner(dim, &black))
+      cf_half_set_images(s, &q.strip, &black, 1);
+      if (cf_half_is_inner(dim, &black))
         cf_last_half(dim, 1, &black, &q.strip, omega, step);
       else
         cf_last_half(dim, 0, &black, &q.strip, omega, step);
       cf_clear_pad(s, &q.strip, &black);
-      set_images(s, &q, &red, 1);
+      cf_half_set_images(s, &q.strip, &red, 1);
       products += cf_products(n, before, black.r + from);
-      any = 1;
     }
     if (any) sums_of(p, t, j)[CF_SUM_BLACK * p->sums] = products;
   }
@@ -130,9 +134,11 @@ CF_KERNEL void last(const int dim, const cf_pass *p, const cf_strip *t, const fl
 /* Bytes of both halves in the order of cells. */
 CF_KERNEL void weave(const int pairs, const unsigned char *even, const unsigned char *odd,
                      unsigned char *line) {
-  for (int m = 0; m < pairs; ++m) {
-    line[2 * m] = even[m];
-    line[2 * m + 1] = odd[m];
+  for (int m = 0; m < pairs; m += CF_SPLIT_LANES) {
+    const cf_sixteen_bytes a = *(const cf_sixteen_bytes *)(even + m),
+                           b = *(const cf_sixteen_bytes *)(odd + m);
+    *(cf_sixteen_bytes *)(line + 2 * m) = CF_SIXTEEN_WOVEN_LOW(a, b);
+    *(cf_sixteen_bytes *)(line + 2 * m + CF_SPLIT_LANES) = CF_SIXTEEN_WOVEN_HIGH(a, b);
   }
 }
 
@@ -145,19 +151,33 @@ CF_KERNEL const unsigned char *faces_of(const cf_segments *g, const piece *q, un
   return line;
 }
 
-/* The sum of f and of its squares where a cell is inside; faces NULL: everywhere. */
-CF_KERNEL void add_inside(const int n, const cf_real *f, const unsigned char *faces, cf_real *line,
-                          double *sum, double *squares) {
+/* The sum of f and of its squares where a cell is inside; faces NULL: everywhere. As cf_sum_row does it. */
+CF_KERNEL void add_inside(const int n, const cf_real *f, const unsigned char *faces, double *sum,
+                          double *squares) {
   double own, of_squares;
   if (faces != NULL) {
-    CF_ROW_LOOP
-    for (int i = 0; i < n; ++i) {
-      const cf_real here = f[i];
-      line[i] = faces[i] & CF_FACES_INSIDE ? here : 0;
+    cf_eight here = {0}, square = {0};
+    double lane[CF_SUM_LANES], squared[CF_SUM_LANES];
+    int i = 0;
+    for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES) {
+      const cf_eight_bits open = CF_EIGHT_OF_BYTES(faces + i);
+      /* + 0: gcc 12 breaks down over a conversion that is masked */
+      const cf_eight all = CF_EIGHT_OF(f + i), v = CF_EIGHT_WHERE(open, CF_FACES_INSIDE, all + 0);
+      here += v;
+      square += v * v;
     }
-    f = line;
+    memcpy(lane, &here, sizeof lane);
+    memcpy(squared, &square, sizeof squared);
+    for (int l = 0; i < n; ++i, ++l) {
+      const double v = faces[i] & CF_FACES_INSIDE ? (double)f[i] : 0;
+      lane[l] += v;
+      squared[l] += v * v;
+    }
+    own = cf_sum_lanes(lane);
+    of_squares = cf_sum_lanes(squared);
+  } else {
+    cf_sum_row(n, f, &own, &of_squares);
   }
-  cf_sum_row(n, f, &own, &of_squares);
   *sum += own;
   *squares += of_squares;
 }
@@ -193,7 +213,7 @@ CF_KERNEL void lift(const cf_pass *p, const piece *q, const ptrdiff_t room, doub
     for (int i = 0; i < n; ++i)
       x[i] = faces == NULL || faces[i] & CF_FACES_INSIDE ? (cf_real)((double)x[i] + by) : x[i];
   }
-  if (p->sums_of_x) add_inside(n, x, faces, (cf_real *)line, sum, squares);
+  if (p->sums_of_x) add_inside(n, x, faces, sum, squares);
 }
 
 CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
@@ -211,16 +231,18 @@ CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const 
       add(p, &q, s->e + at, s->e + at + s->odd, t->scratch);
       if (p->sums_of_x || p->lift != 0) lift(p, &q, 2 * s->width + CF_SPLIT_LANES, t->scratch, &x, &xx);
       const int from = q.strip.from, n = q.strip.to - from;
-      memcpy(before, red.r + from, (size_t)n * sizeof *before);
-      set_images(s, &q, &black, 0);
-      if (q.edge)
-        cf_restart_half(dim, 2, &red, &q.strip, omega, step);
-      else if (cf_half_is_inner(dim, &red))
-        cf_restart_half(dim, 1, &red, &q.strip, omega, step);
-      else
-        cf_restart_half(dim, 0, &red, &q.strip, omega, step);
+      if (q.edge) {
+        products += cf_restart_edge(dim, &red, &q.strip, omega, step);
+      } else {
+        memcpy(before, red.r + from, (size_t)n * sizeof *before);
+        cf_half_set_images(s, &q.strip, &black, 0);
+        if (cf_half_is_inner(dim, &red))
+          cf_restart_half(dim, 1, &red, &q.strip, omega, step);
+        else
+          cf_restart_half(dim, 0, &red, &q.strip, omega, step);
+        products += cf_products(n, before, red.r + from);
+      }
       cf_clear_pad(s, &q.strip, &red);
-      products += cf_products(n, before, red.r + from);
       squares += cf_squares(n, s->r + at, s->r + at + s->odd);
       any = 1;
     }
@@ -236,26 +258,21 @@ CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const 
 
 /* --- FORM --------------------------------------------------------------------------------------------- */
 
-/* Eight cells' faces, a number each. */
-typedef unsigned char eight_bytes __attribute__((vector_size(CF_SUM_LANES), aligned(1), may_alias));
-
-#define EIGHT_OF_BYTES(p) __builtin_convertvector(*(const eight_bytes *)(p), cf_eight_bits)
-
-/* The values of those cells that have this bit, 0 for the others, whatever theirs are. */
-#define WHERE(faces, bit, value) ((cf_eight)((cf_eight_bits)(value) & (((faces) & (bit)) != 0)))
-
 CF_KERNEL void form_eight_at_edge(const int dim, const cf_forming *f, const double coupling, const int i,
                                   const unsigned char *faces, const unsigned char *held) {
   const cf_real *x = f->x + i;
-  const cf_eight_bits open = EIGHT_OF_BYTES(faces + i);
+  const cf_eight_bits open = CF_EIGHT_OF_BYTES(faces + i);
   const cf_eight c = CF_EIGHT_OF(x),
-                 known = __builtin_convertvector(EIGHT_OF_BYTES(held + i) & CF_HELD_MASK, cf_eight);
-  cf_eight sum = WHERE(open, 1, c - CF_EIGHT_OF(x - 1)) - WHERE(open, 2, CF_EIGHT_OF(x + 1) - c);
-  sum += WHERE(open, 4, c - CF_EIGHT_OF(x - f->y)) - WHERE(open, 8, CF_EIGHT_OF(x + f->y) - c);
+                 known = __builtin_convertvector(CF_EIGHT_OF_BYTES(held + i) & CF_HELD_MASK, cf_eight);
+  cf_eight sum =
+      CF_EIGHT_WHERE(open, 1, c - CF_EIGHT_OF(x - 1)) - CF_EIGHT_WHERE(open, 2, CF_EIGHT_OF(x + 1) - c);
+  sum +=
+      CF_EIGHT_WHERE(open, 4, c - CF_EIGHT_OF(x - f->y)) - CF_EIGHT_WHERE(open, 8, CF_EIGHT_OF(x + f->y) - c);
   if (dim == 3)
-    sum += WHERE(open, 16, c - CF_EIGHT_OF(x - f->z)) - WHERE(open, 32, CF_EIGHT_OF(x + f->z) - c);
+    sum += CF_EIGHT_WHERE(open, 16, c - CF_EIGHT_OF(x - f->z)) -
+           CF_EIGHT_WHERE(open, 32, CF_EIGHT_OF(x + f->z) - c);
   const cf_eight Ax = f->alpha * c + coupling * (sum + known * c);
-  *(cf_eight_doubles *)(f->residual + i) = WHERE(open, CF_FACES_INSIDE, CF_EIGHT_OF(f->b + i) - Ax);
+  *(cf_eight_doubles *)(f->residual + i) = CF_EIGHT_WHERE(open, CF_FACES_INSIDE, CF_EIGHT_OF(f->b + i) - Ax);
 }
 
 CF_KERNEL double form_one_at_edge(const int dim, const cf_forming *f, const double coupling, const int i,
@@ -302,8 +319,8 @@ CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
       }
       for (int i = n; i < 2 * pairs; ++i) residual[i] = 0;
       rr += cf_square_sum(2 * pairs, residual);
-      add_inside(n, f.b, open, (cf_real *)line, &b, &bb);
-      add_inside(n, f.x, open, (cf_real *)line, &x, &xx);
+      add_inside(n, f.b, open, &b, &bb);
+      add_inside(n, f.x, open, &x, &xx);
       cf_split_scaled(pairs, 1 / p->scale, residual, s->r + to, s->r + to + s->odd);
       any = 1;
     }
@@ -324,13 +341,13 @@ CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
 CF_KERNEL void gather(const int dim, const int edge, const cf_split *s, const piece *q, float *coarse) {
   const cf_half red = half_of(dim, s, q, 0);
   const int end = CF_MIN(q->strip.to, s->half[red.parity]);
-  CF_ROW_LOOP
-  for (int m = q->strip.from; m < end; ++m) {
-    const float diagonal = edge ? cf_segment_diagonal(red.alpha, red.coupling, red.held[m]) : red.diagonal[m];
-    const float rest = (red.r[m] - diagonal * red.e[m]) + cf_around(dim, 1, &red, m);
-    const float part = edge ? (float)(red.faces[m] & CF_FACES_TRANSFER) * (1.0f / CF_FACES_TRANSFER) : 1;
-    coarse[m] += edge ? part * rest : rest;
+  if (edge) {
+    cf_gather_edge(dim, &red, q->strip.from, end, coarse);
+    return;
   }
+  CF_ROW_LOOP
+  for (int m = q->strip.from; m < end; ++m)
+    coarse[m] += (red.r[m] - red.diagonal[m] * red.e[m]) + cf_around(dim, 1, &red, m);
 }
 
 /* The coarse row whose last child is row j of plane t->k. */
@@ -385,11 +402,6 @@ CF_KERNEL mixture mixture_of(const int dim, const cf_pass *p, const int j, const
   return (mixture){own, own + y, own + z, own + y + z, y != 0 ? 0.25f : 0, z != 0 ? 0.25f : 0};
 }
 
-CF_KERNEL float mixed(const int dim, const mixture *x, const int m, const float of_y, const float of_z) {
-  const float own = x->own[m], sum = own + of_y * (x->y[m] - own);
-  return dim == 3 ? sum + of_z * (x->z[m] - own) : sum;
-}
-
 /* Mixed along y and z: coarse cells [from, end). */
 CF_KERNEL void mix(const int dim, const mixture *of, const int from, const int end, float *line) {
   const mixture x = *of;
@@ -416,20 +428,15 @@ CF_KERNEL void spread(const cf_split *s, const float *line, const int side, int 
   for (int m = from; m < end; ++m) e[m] += 0.75f * line[m] + 0.25f * line[m + side];
 }
 
-CF_KERNEL void spread_edge(const int dim, const cf_segments *g, const piece *q, const mixture *of,
+CF_KERNEL void spread_edge(const int dim, const cf_segments *g, const piece *q, const mixture *x,
                            const int parity, const int end, float *e) {
-  const mixture x = *of;
-  const int side = parity ? 1 : -1;
   const ptrdiff_t entry = cf_segment_entry(q->segment, parity, 0);
-  const unsigned char *faces = g->faces + entry, *weight[3];
-  for (int a = 0; a < 3; ++a) weight[a] = g->weight[a] + entry;
-  const float unit = 1.0f / 256;
-  CF_ROW_LOOP
-  for (int m = q->strip.from; m < end; ++m) {
-    const float fresh = mixed(dim, &x, m, unit * (float)weight[1][m], unit * (float)weight[2][m]) +
-                        unit * (float)weight[0][m] * (x.own[m + side] - x.own[m]);
-    e[m] += (float)(faces[m] & CF_FACES_TRANSFER) * (1.0f / CF_FACES_TRANSFER) * fresh;
-  }
+  const cf_spread_from from = {x->own,
+                               x->y,
+                               x->z,
+                               g->faces + entry,
+                               {g->weight[0] + entry, g->weight[1] + entry, g->weight[2] + entry}};
+  cf_spread_edge(dim, &from, parity ? 1 : -1, q->strip.from, end, e);
 }
 
 CF_KERNEL void fetch(const void *from, const ptrdiff_t bytes) {
