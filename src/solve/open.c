@@ -14,61 +14,103 @@
 /* Everything at the first cell of a row. low and high: 1/h^2 for faces along an axis, 0 where the box ends; wall: what is held
  * there. Of axis 0 they are those of the first and of the last cell, and `inner` holds for all others. */
 typedef struct source {
-  const cf_real *alpha, *beta[3];
-  double alpha_number, beta_number, scale, inner, low[3], high[3], low_wall[3], high_wall[3];
+  const cf_real *beta[3];
+  double beta_number, scale, inner, low[3], high[3], low_wall[3], high_wall[3];
   ptrdiff_t stride[3];
   float *c[3], *free, *held, *inverse;
+  int last; /* cell of the row */
 } source;
 
 enum { CLOSED = 1, HEAVY = 2, FIXED = 4 };
 
-/* form 1: beta is a field. Returns which of CLOSED, HEAVY and FIXED any cell is. */
-CF_KERNEL void fill(const int dim, const int form, const int n, const source *of, int *flags) {
+CF_CLONES static void fill_free(const int n, const cf_real *alpha, const double number, const double scale,
+                                float *free) {
+  if (alpha == NULL) {
+    for (int i = 0; i < n; ++i) free[i] = (float)(scale * number);
+    return;
+  }
+  CF_ROW_LOOP
+  for (int i = 0; i < n; ++i) free[i] = (float)(scale * (double)alpha[i]);
+}
+
+static int finish_cell(const source *s, const int i, const float around) {
+  const float sum = s->free[i] + s->held[i] + around;
+  s->inverse[i] = sum > 0 ? 1 / sum : 0;
+  return (s->free[i] * s->inverse[i] > 0.3f ? HEAVY : 0) | (s->free[i] + s->held[i] > 0 ? FIXED : 0);
+}
+
+/* A cell that may be at walls. */
+static int fill_cell(const int dim, const source *s, const int i) {
+  double wall = 0;
+  float around = 0;
+  int flags = 0;
+  for (int a = 0; a < dim; ++a) {
+    const bool first = a == 0 && i > 0, last = a == 0 && i < s->last;
+    const double low = first ? s->inner : s->low[a], high = last ? s->inner : s->high[a];
+    const double below = s->beta[a] != NULL ? (double)s->beta[a][i] : s->beta_number,
+                 above = s->beta[a] != NULL ? (double)s->beta[a][i + s->stride[a]] : s->beta_number;
+    const float c = (float)(s->scale * (below * low)), d = (float)(s->scale * (above * high));
+    wall += below * (first ? 0 : s->low_wall[a]);
+    wall += above * (last ? 0 : s->high_wall[a]);
+    if ((low > 0 && !(c > FAINT)) || (high > 0 && !(d > FAINT))) flags |= CLOSED;
+    around += c + d;
+    s->c[a][i] = c;
+  }
+  s->held[i] = (float)(s->scale * wall);
+  return flags | finish_cell(s, i, around);
+}
+
+/* Cells 1 to n - 1 that are not, as above. form 1: beta is a field. */
+CF_KERNEL void fill_inner(const int dim, const int form, const int n, const source *of, int *flags) {
   const source s = *of;
+  const double inner = s.inner, scale = s.scale;
   int closed = 0, heavy = 0, fixed = 0;
 #pragma omp simd reduction(| : closed, heavy, fixed)
-  for (int i = 0; i < n; ++i) {
-    const double alpha = s.scale * (s.alpha != NULL ? (double)s.alpha[i] : s.alpha_number);
-    const float free = (float)alpha;
-    double wall = 0;
+  for (int i = 1; i < n; ++i) {
     float around = 0;
     CF_AXIS_LOOP
     for (int a = 0; a < dim; ++a) {
-      const bool first = a == 0 && i > 0, last = a == 0 && i < n - 1;
-      const double low = first ? s.inner : s.low[a], high = last ? s.inner : s.high[a];
       const double below = form ? (double)s.beta[a][i] : s.beta_number,
                    above = form ? (double)s.beta[a][i + s.stride[a]] : s.beta_number;
-      const float c = (float)(s.scale * (below * low)), d = (float)(s.scale * (above * high));
-      wall += below * (first ? 0 : s.low_wall[a]);
-      wall += above * (last ? 0 : s.high_wall[a]);
-      closed |= (low > 0 && !(c > FAINT)) | (high > 0 && !(d > FAINT));
+      const float c = (float)(scale * (below * inner)), d = (float)(scale * (above * inner));
+      closed |= c > FAINT ? 0 : 1;
+      closed |= d > FAINT ? 0 : 1;
       around += c + d;
       s.c[a][i] = c;
     }
-    const float held = (float)(s.scale * wall), sum = free + held + around;
-    const float inverse = sum > 0 ? 1 / sum : 0;
-    s.free[i] = free;
-    s.held[i] = held;
+    const float free = s.free[i], sum = free + around, inverse = sum > 0 ? 1 / sum : 0;
+    s.held[i] = 0;
     s.inverse[i] = inverse;
-    heavy |= free * inverse > 0.3f;
-    fixed |= free + held > 0;
+    heavy |= free * inverse > 0.3f ? 1 : 0;
+    fixed |= free > 0 ? 1 : 0;
   }
   *flags = (closed ? CLOSED : 0) | (heavy ? HEAVY : 0) | (fixed ? FIXED : 0);
 }
-CF_CLONED_FORMS(fill, const source *, int *)
+CF_CLONED_FORMS(fill_inner, const source *, int *)
+
+static int fill_row_of(const cf_coupled *l, const source *s) {
+  int flags = 0, ends = fill_cell(l->dim, s, 0);
+  bool inside = true;
+  for (int a = 1; a < l->dim; ++a) inside = inside && s->low[a] > 0 && s->high[a] > 0;
+  if (inside)
+    fill_inner_by_form(l->dim, s->beta[0] != NULL, s->last, s, &flags);
+  else
+    for (int i = 1; i < s->last; ++i) ends |= fill_cell(l->dim, s, i);
+  if (s->last > 0) ends |= fill_cell(l->dim, s, s->last);
+  return flags | ends;
+}
 
 static source source_of(const cf_varied *v, const cf_coefficients *c, const int j, const int k) {
   const cf_coupled *l = &v->level[0];
   const ptrdiff_t p = cf_box_at(&l->box, 0, j, k);
   const int at[3] = {0, j, k};
-  source s = {.alpha = c->alpha_at != NULL ? c->alpha_at->at + p : NULL,
-              .alpha_number = c->alpha,
-              .beta_number = c->beta,
+  source s = {.beta_number = c->beta,
               .scale = v->scale,
               .inner = 1 / (v->A->grid.h * v->A->grid.h),
               .free = l->free + p,
               .held = l->held + p,
-              .inverse = l->inverse + p};
+              .inverse = l->inverse + p,
+              .last = l->box.n[0] - 1};
   for (int a = 0; a < l->dim; ++a) {
     const int last = l->box.n[a] - 1;
     const bool around = v->A->level[0].axis[a].periodic, low = at[a] == 0, high = a == 0 || at[a] == last;
@@ -101,9 +143,9 @@ bool cf_open_fill(cf_varied *v, const cf_coefficients *c) {
   for (ptrdiff_t r = 0; r < l->rows; ++r)
     CF_TILE_ROWS (l, r, j, k) {
       const source s = source_of(v, c, j, k);
-      int row = 0;
-      fill_by_form(l->dim, c->beta_at != NULL, l->box.n[0], &s, &row);
-      flags |= row;
+      fill_free(l->box.n[0], c->alpha_at != NULL ? c->alpha_at->at + cf_box_at(&l->box, 0, j, k) : NULL,
+                c->alpha, v->scale, s.free);
+      flags |= fill_row_of(l, &s);
     }
   take(l, flags);
   for (int a = 0; a < l->dim && l->is_open; ++a) cf_coupled_wrap_axis(l, a, l->c[a]);
