@@ -208,10 +208,10 @@ static bool is_any_heavy(const cf_coupled *l) {
 
 /* --- the band ----------------------------------------------------------------------------------------- */
 
-CF_CLONES static bool is_any_marked(const int n, const unsigned char *mark) {
+CF_CLONES static bool is_any_edge(const int n, const unsigned char *mark) {
   int any = 0;
   CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) any |= mark[i];
+  for (int i = 0; i < n; ++i) any |= mark[i] & CF_MARK_EDGE;
   return any != 0;
 }
 
@@ -221,17 +221,18 @@ static ptrdiff_t step_to(const cf_coupled *l, const int a, const int i, const in
   return ((l->periodic[a] ? (next + n) % n : CF_MAX(0, CF_MIN(next, n - 1))) - i) * l->box.stride[a];
 }
 
-/* Whether any cell of a run or beside it is marked. */
-static bool is_near_marks(const cf_coupled *l, const cf_run *run, const int j, const int k) {
-  const int at[3] = {0, j, k}, n = run->high - run->low;
+/* Whether any cell of a run or beside it is at an edge. (Marks of odds are those of an earlier equation still.) */
+static bool is_near_edges(const cf_coupled *l, const cf_run *run, const int j, const int k) {
+  const int at[3] = {0, j, k}, n = run->high - run->low, last = l->box.n[0] - 1;
   const ptrdiff_t row = cf_box_at(&l->box, 0, j, k), p = row + run->low;
-  if (is_any_marked(n, l->mark + p)) return true;
-  if (l->mark[row + CF_MAX(run->low - 1, 0)] || l->mark[row + CF_MIN(run->high, l->box.n[0] - 1)])
-    return true;
-  if (l->periodic[0] && (l->mark[row] || l->mark[row + l->box.n[0] - 1])) return true;
+  const unsigned char *mark = l->mark + row;
+  if (is_any_edge(n, l->mark + p)) return true;
+  int beside = mark[CF_MAX(run->low - 1, 0)] | mark[CF_MIN(run->high, last)];
+  if (l->periodic[0]) beside |= mark[0] | mark[last];
+  if (beside & CF_MARK_EDGE) return true;
   for (int a = 1; a < l->dim; ++a)
     for (int side = 0; side < 2; ++side)
-      if (is_any_marked(n, l->mark + p + step_to(l, a, at[a], side))) return true;
+      if (is_any_edge(n, l->mark + p + step_to(l, a, at[a], side))) return true;
   return false;
 }
 
@@ -242,7 +243,7 @@ static void find_band(const cf_coupled *l, const cf_part *w) {
       const cf_tile_row *row = cf_coupled_row_at(l, j, k);
       bool any = false;
       for (ptrdiff_t q = row != NULL ? row->run : 0; row != NULL && q < row->run_end && !any; ++q)
-        any = is_near_marks(l, &l->run[q], j, k);
+        any = is_near_edges(l, &l->run[q], j, k);
       l->band[j + (ptrdiff_t)l->box.n[1] * k] = any;
     }
 }

@@ -82,7 +82,7 @@ CF_KERNEL void half_piece(const int dim, const int form, const int n, const view
   const view w = *v;
   float *e = w.e + at.p;
   const float *r = w.r + at.p, *inverse = w.inverse + at.p;
-  float fresh[APART];
+  _Alignas(CF_ALIGN) float fresh[APART];
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
     CF_THROWN_AWAY(((i ^ at.parity) & 1) != 0);
@@ -128,7 +128,7 @@ CF_KERNEL void residual_row(const int dim, const int n, const view *v, const pla
 
 /* The pairs of cells of a row go to the coarse row above it, or its cells do; what is missing at its end counts as 0. */
 CF_KERNEL void sum_row(const int dim, const int n, const view *v, const place at) {
-  float rest[APART + 1];
+  _Alignas(CF_ALIGN) float rest[APART + 1];
   const int shift = v->pairs, first = v->is_first;
   for (int from = 0; from < n; from += APART) {
     const int m = CF_MIN(APART, n - from);
