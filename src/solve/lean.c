@@ -8,8 +8,8 @@
 
 #include "base/real.h"
 
-/* What the planes between the first and the last stage may take: half of a small second-level cache. */
-#define WINDOW_BYTES (512 * 1024)
+/* What the planes between the first and the last stage may take: three quarters of a small second-level cache. */
+#define WINDOW_BYTES (768 * 1024)
 /* Rows that go through all stages together. */
 #define BLOCK_ROWS 8
 
