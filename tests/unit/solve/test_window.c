@@ -219,11 +219,11 @@ static void a_window_has_the_solution_of_the_box(void **state) {
 /* --- bits --------------------------------------------------------------------------------------------------- */
 
 /* A drop goes through the box, over the ends of windows and seams, grows and shrinks; a solver that has followed it against a
- * fresh one. */
+ * fresh one. In some rounds without windows: of a level nothing may be left where the drop has been. */
 static void a_moving_drop_has_the_bits_of_one_just_met(void **state) {
   (void)state;
   int windows = 0, moves = 0;
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < 8; ++round) {
     const int dim = 2 + round % 2, least = dim == 2 ? 90 : 50;
     scene s;
     double middle[3];
@@ -234,6 +234,7 @@ static void a_moving_drop_has_the_bits_of_one_just_met(void **state) {
       for (int a = 0; a < dim; ++a) middle[a] = fmod(middle[a] + 3, s.g.box.n[a]);
       cf_helmholtz_destroy(s.A[1]);
       OK(cf_helmholtz_create(&s.A[1], &s.g, &s.walls, 0));
+      for (int v = 0; v < SOLVERS && round > 5; ++v) cf_helmholtz_forbid_windows(s.A[v]);
       drip(&s, middle, step % 3 == 0 ? 11 : 8 + step, CF_CELL_WALL);
       fill(&s);
       const cf_coefficients c = law_of(&s);
