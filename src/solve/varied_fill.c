@@ -121,6 +121,27 @@ static void fill_inner(const filling *f, const int n, const ptrdiff_t p) {
   memset(l->held + p, 0, (size_t)n * sizeof *l->held);
 }
 
+/* Whether none of n cells from `at` on is inside, nor at a high end of the box, where a row has one more face. */
+static bool is_void(const cf_varied *v, const int at[3], const int n, const ptrdiff_t p) {
+  const cf_box *b = &v->level[0].box;
+  for (int a = 0; a < b->dim; ++a)
+    if (at[a] + (a == 0 ? n : 1) >= b->n[a]) return false;
+  return v->region != NULL && memchr(v->region->kind + p, CF_CELL_INSIDE, (size_t)n) == NULL;
+}
+
+static void fill_void(const filling *f, const int n, const ptrdiff_t p) {
+  const cf_varied *v = f->v;
+  const cf_coupled *l = &v->level[0];
+  const size_t floats = (size_t)n * sizeof(float), reals = (size_t)n * sizeof(cf_real);
+  for (int a = 0; a < l->dim; ++a) {
+    memset(l->c[a] + p, 0, floats);
+    if (v->own_beta.at[0] != NULL) memset(v->own_beta.at[a] + p, 0, reals);
+  }
+  memset(l->free + p, 0, floats);
+  memset(l->held + p, 0, floats);
+  if (v->alpha.at != NULL && v->alpha.at == v->own_alpha.at) memset(v->own_alpha.at + p, 0, reals);
+}
+
 static void fill_run(const filling *f, const cf_run *run, const int j, const int k) {
   const int last = f->v->level[0].box.n[0] - 2;
   for (int from = run->low, end; from < run->high; from = end) {
@@ -129,6 +150,8 @@ static void fill_run(const filling *f, const cf_run *run, const int j, const int
     end = CF_MIN(from + most, run->high);
     if (is_inner(f->v, at, end - from, p))
       fill_inner(f, end - from, p);
+    else if (is_void(f->v, at, end - from, p))
+      fill_void(f, end - from, p);
     else
       for (int i = from; i < end; ++i) fill_cell(f, (int[]){i, j, k}, p + i - from);
   }
