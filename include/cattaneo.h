@@ -647,7 +647,7 @@ cf_status cf_helmholtz_solve(cf_helmholtz *A, cf_cell b, const cf_solve_options 
 /* b += what cells of the region that are held contribute, 2 beta x_held/h^2 for each of their faces. */
 void cf_helmholtz_add_held(const cf_helmholtz *A, cf_cell b);
 
-/* y = A x. x's ghosts on periodic walls are filled. */
+/* y = A x. x's ghosts on periodic walls may be filled. */
 void cf_helmholtz_apply(cf_helmholtz *A, cf_cell x, cf_cell y);
 
 /* |b - A x| / |b|, computed afresh. */
