@@ -31,6 +31,8 @@
 #define START_GAIN (1024 * CF_REAL_EPSILON)
 /* Below this share of alpha in the diagonal a mean of b is round-off, and tells nothing. */
 #define MEAN_LOST 1e-8
+/* So far (in squares) above what rounding of x may do, a residual is told without being formed anew. */
+#define ROUNDING_SEEN 1e4
 /* What is left may be so many times the floor (in squares) where rounding is the reason. */
 #define NEAR_ROUNDING 16
 
@@ -131,20 +133,27 @@ static void approach(cf_varied *v, const cf_cell b, const double enough, const i
   }
 }
 
+/* Whether the residual that cycles have kept is the true one: it does not see how x is rounded. */
+static bool tells(const cf_varied *v, const cf_varied_sums *s, const double enough) {
+  return sizeof(cf_real) == sizeof(double) && ROUNDING_SEEN * floor_of(v, s) <= enough;
+}
+
 /* By stationary cycles, as far as they go. *done: the tolerance is met. x is what it was where b or A x is not finite. */
 static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                        cf_solve_report *report, bool *done) {
-  cf_varied_sums s = {INFINITY, cf_varied_squares(v, b), 0};
-  const double enough = o->tolerance * o->tolerance * s.second;
-  const bool tells = sizeof(cf_real) == sizeof(double); /* else x's rounding is more than what r says */
+  const double bb = cf_varied_squares(v, b), tell = CF_CYCLES_TELL * CF_CYCLES_TELL;
+  const cf_cycles_until until = {o->tolerance * o->tolerance * bb, o->max_iterations};
+  cf_varied_sums s = {0, 0, 0};
   *done = false;
-  if (!(s.second > 0) || !isfinite(s.second)) return CF_OK;
-  for (double first, before = INFINITY;; before = first) {
-    s.first = cf_varied_run_cycles(v, b, s.second, enough, o->max_iterations, x, &first, &report->iterations);
-    *done = tells && s.first <= enough;
-    if (*done || !(first <= 0.25 * before) || !(s.first <= CF_CYCLES_TELL * CF_CYCLES_TELL * first)) break;
+  if (!(bb > 0) || !isfinite(bb)) return CF_OK;
+  for (double before = INFINITY;; before = s.second) {
+    s = cf_varied_run_cycles(v, b, bb, &until, x, &report->iterations);
+    *done = s.first <= until.enough && tells(v, &s, until.enough);
+    if (*done || s.first <= until.enough || !(s.second <= 0.25 * before) || !(s.first <= tell * s.second))
+      break;
   }
   restore_means(v, x);
+  s.second = bb;
   return *done ? cf_varied_judge(v, &s, o, report) : CF_OK;
 }
 

@@ -104,8 +104,18 @@ typedef struct work {
   double unit;
 } work;
 
+/* The place of a row's sums: the first, and a box's rows further the second. */
 static double *sum_of(const cf_varied *v, const int j, const int k) {
   return &v->sums[j + (ptrdiff_t)k * v->A->grid.box.n[1]];
+}
+
+/* The squares of r and of x. */
+static void keep_sums(const work *w, const int n, const int j, const int k) {
+  const cf_coupled *l = &w->v->level[0];
+  const ptrdiff_t p = cf_box_at(&l->box, 0, j, k);
+  double *sums = sum_of(w->v, j, k);
+  sums[0] = squares_single(n, l->r + p);
+  sums[cf_box_rows(&l->box)] = squares(n, w->x.at + p);
 }
 
 static turn turn_of(const work *w, const ptrdiff_t p) {
@@ -121,7 +131,7 @@ static void begin_run(const void *of, const cf_run *run, const int j, const int 
   cf_varied_row o = cf_varied_row_of(w->v, run, j, k, w->x);
   o.b = w->b.at + p;
   begin_row(l->dim, cf_varied_form_of(w->v), run->high - run->low, &o, &t);
-  *sum_of(w->v, j, k) = squares_single(run->high - run->low, l->r + p);
+  keep_sums(w, run->high - run->low, j, k);
 }
 
 static void advance_run(const void *of, const cf_run *run, const int j, const int k) {
@@ -131,7 +141,7 @@ static void advance_run(const void *of, const cf_run *run, const int j, const in
   const turn t = turn_of(w, p);
   const cf_varied_row o = cf_varied_row_of(w->v, run, j, k, w->x);
   advance_row(l->dim, cf_varied_form_of(w->v), run->high - run->low, &o, &t);
-  *sum_of(w->v, j, k) = squares_single(run->high - run->low, l->r + p);
+  keep_sums(w, run->high - run->low, j, k);
 }
 
 static void add_down(cf_coupled_pass *s, const int halves) {
@@ -179,12 +189,16 @@ static ptrdiff_t bytes_of(const cf_varied *v) {
   return fields * (ptrdiff_t)sizeof(cf_real);
 }
 
-bool cf_varied_can_cycle(const cf_varied *v) {
-  return v->depth > 1 && v->level[0].is_open;
+bool cf_varied_can_cycle(const cf_varied *v) { return v->depth > 1 && v->level[0].is_open; }
+
+/* After a pass. */
+static cf_varied_sums sums_of(const work *w) {
+  cf_varied_sums s = cf_varied_add_up(w->v, 2);
+  return (cf_varied_sums){s.first / (w->unit * w->unit), 0, s.second};
 }
 
-double cf_varied_run_cycles(const cf_varied *v, const cf_cell b, const double bb, const double enough,
-                            const int limit, const cf_cell x, double *first, int *iterations) {
+cf_varied_sums cf_varied_run_cycles(const cf_varied *v, const cf_cell b, const double bb,
+                                    const cf_cycles_until *until, const cf_cell x, int *iterations) {
   const cf_coupled *l = &v->level[0];
   work w = {v, x, b, 1};
   int exponent;
@@ -196,28 +210,29 @@ double cf_varied_run_cycles(const cf_varied *v, const cf_cell b, const double bb
   cf_pass_add(&s, CF_STAGE_OWN, 0, 1);
   add_down(&s, BEFORE);
   cf_coupled_run(&s, false);
-  double rr = cf_varied_add_up(v, 1).first / (w.unit * w.unit), rate = 1, most = FIRST_MOST;
-  *first = rr;
-  const double target = CF_MAX(enough, CF_CYCLES_TELL * CF_CYCLES_TELL * rr);
+  cf_varied_sums now = sums_of(&w);
+  const double begun = now.first, target = CF_MAX(until->enough, CF_CYCLES_TELL * CF_CYCLES_TELL * begun);
+  double rate = 1, most = FIRST_MOST;
   s.own = advance_run;
-  while (rr > target && *iterations < limit) {
-    const double before = rr;
-    const bool last = HOPE * rr * rate <= target;
+  while (now.first > target && *iterations < until->limit) {
+    const double before = now.first;
+    const bool last = HOPE * before * rate <= target;
     correct(v, 1);
     s.count = 0;
     add_up(&s, AFTER);
     cf_pass_add(&s, CF_STAGE_OWN, 0, 1);
     if (!last) add_down(&s, BEFORE);
     cf_coupled_run(&s, false);
-    rr = cf_varied_add_up(v, 1).first / (w.unit * w.unit);
+    now = sums_of(&w);
     ++*iterations;
-    rate = rr / before;
+    rate = now.first / before;
     if (!(rate <= most * most)) break;
     most = RATE_MOST;
-    if (!last || rr <= target) continue;
+    if (!last || now.first <= target) continue;
     s.count = 0;
     add_down(&s, BEFORE);
     cf_coupled_run(&s, false);
   }
-  return rr;
+  now.second = begun;
+  return now;
 }

@@ -21,8 +21,8 @@ struct cf_varied {
   bool sweeps;       /* half sweeps alone do; `jacobi`: the most that diffusion has of a diagonal */
   double jacobi;
   float excess[2]; /* of the level below the finest (amend.h) */
-  bool careful;  /* the cycle is symmetric: slower, and never led astray */
-  bool thorough; /* two corrections from each level below, without sweeps of their own near walls */
+  bool careful;    /* the cycle is symmetric: slower, and never led astray */
+  bool thorough;   /* two corrections from each level below, without sweeps of their own near walls */
   cf_band_sweeps band_sweeps; /* near walls, before and after the coarse correction */
   cf_band band;
   cf_pockets pockets;
@@ -112,10 +112,16 @@ bool cf_varied_can_cycle(const cf_varied *v);
 /* The squares of f on all of the box. */
 double cf_varied_squares(const cf_varied *v, cf_cell f);
 
-/* Cycles until the square of the residual is `enough`, or one does not gain what it should; bb: the square of b. Returns what
- * is left; *first: what there was. */
-double cf_varied_run_cycles(const cf_varied *v, cf_cell b, double bb, double enough, int limit, cf_cell x,
-                            double *first, int *iterations);
+/* What ends them: the square of the residual, and all iterations. */
+typedef struct cf_cycles_until {
+  double enough;
+  int limit;
+} cf_cycles_until;
+
+/* Cycles until then, or until one does not gain what it should; bb: the square of b. The squares of the residual that is
+ * left, of the one that there was, and of x. */
+cf_varied_sums cf_varied_run_cycles(const cf_varied *v, cf_cell b, double bb, const cf_cycles_until *until,
+                                    cf_cell x, int *iterations);
 
 /* --- half sweeps alone (varied_sweeps.c) --------------------------------------------------------------- */
 
