@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * The path of cf_helmholtz_solve for coefficients that vary and for regions: conjugate gradients in the precision of the
- * state around one V-cycle in single precision over levels of couplings (coupled.h); or, where diffusion adds little to
- * the diagonal, half sweeps alone (varied_sweeps.c).
+ * state around one V-cycle in single precision over levels of couplings (coupled.h); before that, where no face is closed,
+ * stationary cycles (varied_cycles.c), which mostly suffice; or, where diffusion adds little to the diagonal, half sweeps
+ * alone (varied_sweeps.c).
  *
  * Where no alpha and no known value fixes the level of a part of the region, that part is a pocket: its right side is made
  * to sum to zero and its solution keeps the mean it came with, each pocket for itself.
