@@ -71,15 +71,7 @@ CF_KERNEL void begin(const int dim, const int form, const int n, const cf_varied
   const double unit = t->unit;
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
-    const double x = (double)o.x[i];
-    double sum = (double)cf_alpha_at(form, &o, i) * x;
-    CF_AXIS_LOOP
-    for (int a = 0; a < dim; ++a) {
-      const ptrdiff_t s = o.stride[a];
-      sum += (double)cf_low_at(form, &o, a, i) * (x - (double)o.x[i - s]) -
-             (double)cf_high_at(form, &o, a, i) * ((double)o.x[i + s] - x);
-    }
-    r[i] = (float)(unit * ((double)o.b[i] - sum));
+    r[i] = (float)(unit * ((double)o.b[i] - cf_apply_at(dim, form, &o, i)));
   }
 }
 CF_VARIED_ROWS(begin, const turn *)

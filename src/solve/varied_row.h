@@ -61,6 +61,19 @@ CF_KERNEL cf_real cf_high_at(const int form, const cf_varied_row *o, const int a
          (form == CF_BETA_NUMBER ? o->beta_number : o->beta[a][i + o->stride[a]]);
 }
 
+/* A x of cell i in double, so that of the rounding only that of x itself is seen. */
+CF_KERNEL double cf_apply_at(const int dim, const int form, const cf_varied_row *o, const int i) {
+  const double x = (double)o->x[i];
+  double sum = (double)cf_alpha_at(form, o, i) * x;
+  CF_AXIS_LOOP
+  for (int a = 0; a < dim; ++a) {
+    const ptrdiff_t s = o->stride[a];
+    sum += (double)cf_low_at(form, o, a, i) * (x - (double)o->x[i - s]) -
+           (double)cf_high_at(form, o, a, i) * ((double)o->x[i + s] - x);
+  }
+  return sum;
+}
+
 /* Makes name##_row(dim, form, n, row, x) of the kernel name(dim, form, n, row, x), for each dim and form. */
 #define CF_VARIED_CLONE(name, dim, form, T)                                               \
   CF_CLONES static void name##_##dim##_##form(const int n, const cf_varied_row *o, T x) { \

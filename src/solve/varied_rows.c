@@ -33,21 +33,13 @@ CF_KERNEL void operate(const int dim, const int form, const int n, const cf_vari
 }
 CF_VARIED_ROWS(operate, const int)
 
-/* y = b - A x where the cell has an equation, else 0: in double, so that of the rounding only that of x itself is seen. */
+/* y = b - A x where the cell has an equation, else 0. */
 CF_KERNEL void remain(const int dim, const int form, const int n, const cf_varied_row *of, const int unused) {
   (void)unused;
   const cf_varied_row o = *of;
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) {
-    const double x = (double)o.x[i];
-    double sum = (double)cf_alpha_at(form, &o, i) * x;
-    CF_AXIS_LOOP
-    for (int a = 0; a < dim; ++a) {
-      const ptrdiff_t s = o.stride[a];
-      sum += (double)cf_low_at(form, &o, a, i) * (x - (double)o.x[i - s]) -
-             (double)cf_high_at(form, &o, a, i) * ((double)o.x[i + s] - x);
-    }
-    o.y[i] = o.inverse[i] > 0 ? (cf_real)((double)o.b[i] - sum) : 0;
+    o.y[i] = o.inverse[i] > 0 ? (cf_real)((double)o.b[i] - cf_apply_at(dim, form, &o, i)) : 0;
   }
 }
 CF_VARIED_ROWS(remain, const int)
