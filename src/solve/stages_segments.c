@@ -13,31 +13,10 @@
 #include <string.h>
 
 #include "solve/coupled.h"
-#include "solve/segments.h"
-#include "solve/stages_apply.h"
 #include "solve/stages_edge.h"
+#include "solve/stages_pieces.h"
 
-/* A piece of a segment: the part of the strip that it takes, and the halves of its row. */
-typedef struct piece {
-  const cf_segment *segment;
-  cf_strip strip; /* of that row alone */
-  int edge;       /* 0 or 1 */
-} piece;
-
-/* Segment v as far as it lies in the strip; false: not at all. */
-CF_KERNEL int piece_of(const cf_segments *g, const cf_strip *t, const int j, const ptrdiff_t v, piece *q) {
-  q->segment = &g->segment[v];
-  q->strip = *t;
-  q->strip.j = j;
-  q->strip.end = j + 1;
-  q->strip.next_j = t->next_j + j - t->j;
-  q->strip.from = CF_MAX(t->from, q->segment->from);
-  q->strip.to = CF_MIN(t->to, q->segment->to);
-  q->edge = q->segment->table >= 0;
-  return q->strip.from < q->strip.to;
-}
-
-CF_KERNEL cf_half half_of(const int dim, const cf_split *s, const piece *q, const int colour) {
+CF_KERNEL cf_half half_of(const int dim, const cf_split *s, const cf_piece *q, const int colour) {
   cf_half h = cf_half_of(dim, s, q->strip.j, q->strip.k, colour);
   if (q->edge) {
     const ptrdiff_t entry = cf_segment_entry(q->segment, h.parity, 0);
@@ -48,23 +27,17 @@ CF_KERNEL cf_half half_of(const int dim, const cf_split *s, const piece *q, cons
   return h;
 }
 
-#define FOR_PIECES(s, t, j, q)                                                     \
-  for (ptrdiff_t v_ = (s)->segments->first[cf_segments_row(s, j, (t)->k)],         \
-                 end_v_ = (s)->segments->first[cf_segments_row(s, j, (t)->k) + 1]; \
-       v_ < end_v_; ++v_)                                                          \
-    if (piece_of((s)->segments, t, j, v_, &(q)))
-
 /* Images are for plain segments: on the others a face knows whether it is one. */
-CF_KERNEL void set_images(const cf_split *s, const piece *q, const cf_half *h, const float factor) {
+CF_KERNEL void set_images(const cf_split *s, const cf_piece *q, const cf_half *h, const float factor) {
   if (!q->edge) cf_half_set_images(s, &q->strip, h, factor);
 }
 
 /* --- half sweeps -------------------------------------------------------------------------------------- */
 
 CF_KERNEL void first(const int dim, const cf_split *s, const cf_strip *t, const float omega) {
-  piece q;
+  cf_piece q;
   CF_FOR_ROWS(j, t)
-  FOR_PIECES(s, t, j, q) {
+  CF_FOR_PIECES(s, t, j, q) {
     const cf_half red = half_of(dim, s, &q, 0);
     cf_first_half(s, &red, &q.strip, omega);
   }
@@ -76,9 +49,9 @@ enum { ALL, FRESH, EDGES };
 CF_KERNEL void relax(const int dim, const int way, const cf_split *s, const cf_strip *t, const int colour,
                      const float omega) {
   const float keep = 1 - omega;
-  piece q;
+  cf_piece q;
   CF_FOR_ROWS(j, t)
-  FOR_PIECES(s, t, j, q) {
+  CF_FOR_PIECES(s, t, j, q) {
     if (way == EDGES && !q.edge) continue;
     const cf_half h = half_of(dim, s, &q, colour);
     if (way == FRESH) {
@@ -94,21 +67,15 @@ CF_KERNEL void relax(const int dim, const int way, const cf_split *s, const cf_s
 
 /* --- residual and solution ---------------------------------------------------------------------------- */
 
-/* Where the sums of a row with segments go. */
-CF_KERNEL double *sums_of(const cf_pass *p, const cf_strip *t, const int j) {
-  const ptrdiff_t row = p->at->segments->number[cf_segments_row(p->at, j, t->k)];
-  return p->rows + row * t->sum_step + t->sum % t->sum_step;
-}
-
 CF_KERNEL void last(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
   const cf_split *s = p->at;
   const float step = (float)p->step;
   float *before = t->scratch;
-  piece q;
+  cf_piece q;
   CF_FOR_ROWS(j, t) {
     double products = 0;
     int any = 0;
-    FOR_PIECES(s, t, j, q) {
+    CF_FOR_PIECES(s, t, j, q) {
       const cf_half red = half_of(dim, s, &q, 0), black = half_of(dim, s, &q, 1);
       const int from = q.strip.from, n = q.strip.to - from;
       any = 1;
@@ -127,63 +94,12 @@ CF_KERNEL void last(const int dim, const cf_pass *p, const cf_strip *t, const fl
       cf_half_set_images(s, &q.strip, &red, 1);
       products += cf_products(n, before, black.r + from);
     }
-    if (any) sums_of(p, t, j)[CF_SUM_BLACK * p->sums] = products;
+    if (any) cf_piece_sums(p, t, j)[CF_SUM_BLACK * p->sums] = products;
   }
-}
-
-/* Bytes of both halves in the order of cells. */
-CF_KERNEL void weave(const int pairs, const unsigned char *even, const unsigned char *odd,
-                     unsigned char *line) {
-  for (int m = 0; m < pairs; m += CF_SPLIT_LANES) {
-    const cf_sixteen_bytes a = *(const cf_sixteen_bytes *)(even + m),
-                           b = *(const cf_sixteen_bytes *)(odd + m);
-    *(cf_sixteen_bytes *)(line + 2 * m) = CF_SIXTEEN_WOVEN_LOW(a, b);
-    *(cf_sixteen_bytes *)(line + 2 * m + CF_SPLIT_LANES) = CF_SIXTEEN_WOVEN_HIGH(a, b);
-  }
-}
-
-/* The faces of the cells of a piece in their order; NULL where all are inside. */
-CF_KERNEL const unsigned char *faces_of(const cf_segments *g, const piece *q, unsigned char *line) {
-  if (!q->edge) return NULL;
-  const ptrdiff_t even = cf_segment_entry(q->segment, 0, q->strip.from);
-  const ptrdiff_t odd = cf_segment_entry(q->segment, 1, q->strip.from);
-  weave(q->strip.to - q->strip.from, g->faces + even, g->faces + odd, line);
-  return line;
-}
-
-/* The sum of f and of its squares where a cell is inside; faces NULL: everywhere. As cf_sum_row does it. */
-CF_KERNEL void add_inside(const int n, const cf_real *f, const unsigned char *faces, double *sum,
-                          double *squares) {
-  double own, of_squares;
-  if (faces != NULL) {
-    cf_eight here = {0}, square = {0};
-    double lane[CF_SUM_LANES], squared[CF_SUM_LANES];
-    int i = 0;
-    for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES) {
-      const cf_eight_bits open = CF_EIGHT_OF_BYTES(faces + i);
-      /* + 0: gcc 12 breaks down over a conversion that is masked */
-      const cf_eight all = CF_EIGHT_OF(f + i), v = CF_EIGHT_WHERE(open, CF_FACES_INSIDE, all + 0);
-      here += v;
-      square += v * v;
-    }
-    memcpy(lane, &here, sizeof lane);
-    memcpy(squared, &square, sizeof squared);
-    for (int l = 0; i < n; ++i, ++l) {
-      const double v = faces[i] & CF_FACES_INSIDE ? (double)f[i] : 0;
-      lane[l] += v;
-      squared[l] += v * v;
-    }
-    own = cf_sum_lanes(lane);
-    of_squares = cf_sum_lanes(squared);
-  } else {
-    cf_sum_row(n, f, &own, &of_squares);
-  }
-  *sum += own;
-  *squares += of_squares;
 }
 
 /* x += gain e on the cells of the piece from its first to its last inside. */
-CF_KERNEL void add(const cf_pass *p, const piece *q, const float *even, const float *odd, float *line) {
+CF_KERNEL void add(const cf_pass *p, const cf_piece *q, const float *even, const float *odd, float *line) {
   const int from = 2 * q->strip.from, low = CF_MAX(from, q->segment->low);
   const int high = CF_MIN(2 * q->strip.to, q->segment->high);
   const double gain = p->gain;
@@ -202,9 +118,9 @@ CF_KERNEL void add(const cf_pass *p, const piece *q, const float *even, const fl
 }
 
 /* x += lift where a cell is inside, and the sums of what comes of it. */
-CF_KERNEL void lift(const cf_pass *p, const piece *q, const ptrdiff_t room, double *line, double *sum,
+CF_KERNEL void lift(const cf_pass *p, const cf_piece *q, const ptrdiff_t room, double *line, double *sum,
                     double *squares) {
-  const unsigned char *faces = faces_of(p->at->segments, q, (unsigned char *)(line + room));
+  const unsigned char *faces = cf_piece_faces(p->at->segments, q, (unsigned char *)(line + room));
   const int n = cf_natural_count(p->at, &q->strip);
   const double by = p->lift;
   cf_real *x = p->x + cf_box_at(&p->at->plain->box, 2 * q->strip.from, q->strip.j, q->strip.k);
@@ -213,18 +129,18 @@ CF_KERNEL void lift(const cf_pass *p, const piece *q, const ptrdiff_t room, doub
     for (int i = 0; i < n; ++i)
       x[i] = faces == NULL || faces[i] & CF_FACES_INSIDE ? (cf_real)((double)x[i] + by) : x[i];
   }
-  if (p->sums_of_x) add_inside(n, x, faces, sum, squares);
+  if (p->sums_of_x) cf_add_inside(n, x, faces, sum, squares);
 }
 
 CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
   const cf_split *s = p->at;
   const float step = (float)p->step;
   float *before = t->scratch;
-  piece q;
+  cf_piece q;
   CF_FOR_ROWS(j, t) {
     double squares = 0, products = 0, x = 0, xx = 0;
     int any = 0;
-    FOR_PIECES(s, t, j, q) {
+    CF_FOR_PIECES(s, t, j, q) {
       const cf_half red = half_of(dim, s, &q, 0), black = half_of(dim, s, &q, 1);
       const ptrdiff_t at = j * s->row + t->k * s->plane + q.strip.from;
       if (t->next_k >= 0) cf_fetch_x(p, &q.strip, j);
@@ -247,88 +163,10 @@ CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const 
       any = 1;
     }
     if (!any) continue;
-    double *sums = sums_of(p, t, j);
+    double *sums = cf_piece_sums(p, t, j);
     sums[CF_SUM_RESIDUAL * p->sums] = squares;
     sums[CF_SUM_RED * p->sums] = products;
     if (!p->sums_of_x) continue;
-    sums[CF_SUM_X * p->sums] = x;
-    sums[CF_SUM_X2 * p->sums] = xx;
-  }
-}
-
-/* --- FORM --------------------------------------------------------------------------------------------- */
-
-CF_KERNEL void form_eight_at_edge(const int dim, const cf_forming *f, const double coupling, const int i,
-                                  const unsigned char *faces, const unsigned char *held) {
-  const cf_real *x = f->x + i;
-  const cf_eight_bits open = CF_EIGHT_OF_BYTES(faces + i);
-  const cf_eight c = CF_EIGHT_OF(x),
-                 known = __builtin_convertvector(CF_EIGHT_OF_BYTES(held + i) & CF_HELD_MASK, cf_eight);
-  cf_eight sum =
-      CF_EIGHT_WHERE(open, 1, c - CF_EIGHT_OF(x - 1)) - CF_EIGHT_WHERE(open, 2, CF_EIGHT_OF(x + 1) - c);
-  sum +=
-      CF_EIGHT_WHERE(open, 4, c - CF_EIGHT_OF(x - f->y)) - CF_EIGHT_WHERE(open, 8, CF_EIGHT_OF(x + f->y) - c);
-  if (dim == 3)
-    sum += CF_EIGHT_WHERE(open, 16, c - CF_EIGHT_OF(x - f->z)) -
-           CF_EIGHT_WHERE(open, 32, CF_EIGHT_OF(x + f->z) - c);
-  const cf_eight Ax = f->alpha * c + coupling * (sum + known * c);
-  *(cf_eight_doubles *)(f->residual + i) = CF_EIGHT_WHERE(open, CF_FACES_INSIDE, CF_EIGHT_OF(f->b + i) - Ax);
-}
-
-CF_KERNEL double form_one_at_edge(const int dim, const cf_forming *f, const double coupling, const int i,
-                                  const int open, const int held) {
-  const cf_real *x = f->x + i;
-  const double c = (double)x[0];
-  double sum = (open & 1 ? c - (double)x[-1] : 0) - (open & 2 ? (double)x[1] - c : 0);
-  sum += (open & 4 ? c - (double)x[-f->y] : 0) - (open & 8 ? (double)x[f->y] - c : 0);
-  if (dim == 3) sum += (open & 16 ? c - (double)x[-f->z] : 0) - (open & 32 ? (double)x[f->z] - c : 0);
-  return open & CF_FACES_INSIDE
-             ? (double)f->b[i] - (f->alpha * c + coupling * (sum + (double)(held & CF_HELD_MASK) * c))
-             : 0;
-}
-
-CF_KERNEL void form_edge(const int dim, const int n, const cf_forming *f, const double coupling,
-                         const unsigned char *faces, const unsigned char *held) {
-  int i = 0;
-  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES) form_eight_at_edge(dim, f, coupling, i, faces, held);
-  for (; i < n; ++i) f->residual[i] = form_one_at_edge(dim, f, coupling, i, faces[i], held[i]);
-}
-
-CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
-  const cf_split *s = p->at;
-  const cf_segments *g = s->segments;
-  const double coupling = p->beta * s->plain->axis[0].lo1[1];
-  const ptrdiff_t room = 2 * s->width + CF_SPLIT_LANES;
-  double *residual = t->scratch, *line = residual + room;
-  unsigned char *bytes = (unsigned char *)(line + room), *held = bytes + room;
-  piece q;
-  CF_FOR_ROWS(j, t) {
-    double rr = 0, b = 0, bb = 0, x = 0, xx = 0;
-    int any = 0;
-    FOR_PIECES(s, t, j, q) {
-      const int n = cf_natural_count(s, &q.strip), pairs = q.strip.to - q.strip.from;
-      const ptrdiff_t to = j * s->row + t->k * s->plane + q.strip.from;
-      const cf_forming f = cf_forming_of(dim, p, &q.strip, j);
-      const unsigned char *open = faces_of(g, &q, bytes);
-      if (q.edge) {
-        weave(pairs, g->held + cf_segment_entry(q.segment, 0, q.strip.from),
-              g->held + cf_segment_entry(q.segment, 1, q.strip.from), held);
-        form_edge(dim, n, &f, coupling, open, held);
-      } else {
-        cf_form_row(dim, n, &f);
-      }
-      for (int i = n; i < 2 * pairs; ++i) residual[i] = 0;
-      rr += cf_square_sum(2 * pairs, residual);
-      add_inside(n, f.b, open, &b, &bb);
-      add_inside(n, f.x, open, &x, &xx);
-      cf_split_scaled(pairs, 1 / p->scale, residual, s->r + to, s->r + to + s->odd);
-      any = 1;
-    }
-    if (!any) continue;
-    double *sums = sums_of(p, t, j);
-    sums[CF_SUM_RESIDUAL * p->sums] = rr;
-    sums[CF_SUM_B * p->sums] = b;
-    sums[CF_SUM_B2 * p->sums] = bb;
     sums[CF_SUM_X * p->sums] = x;
     sums[CF_SUM_X2 * p->sums] = xx;
   }
@@ -338,7 +176,7 @@ CF_KERNEL void form(const int dim, const cf_pass *p, const cf_strip *t) {
 
 /* What a piece of a fine row leaves to its coarse cells: of its red ones, since the black half sweep before, with omega = 1, has
  * left nothing on the others. */
-CF_KERNEL void gather(const int dim, const int edge, const cf_split *s, const piece *q, float *coarse) {
+CF_KERNEL void gather(const int dim, const int edge, const cf_split *s, const cf_piece *q, float *coarse) {
   const cf_half red = half_of(dim, s, q, 0);
   const int end = CF_MIN(q->strip.to, s->half[red.parity]);
   if (edge) {
@@ -355,13 +193,13 @@ CF_KERNEL void restrict_row(const int dim, const cf_pass *p, const cf_strip *t, 
   const cf_split *s = p->at;
   const cf_box *c = &p->below->box;
   float *coarse = p->below->r + cf_box_at(c, 0, j / 2, dim == 3 ? t->k / 2 : 0);
-  piece q;
+  cf_piece q;
   for (int gathering = 0; gathering < 2; ++gathering)
     for (int k = t->k - (dim == 3 ? t->k % 2 : 0); k <= t->k; ++k)
       for (int jj = j - j % 2; jj <= j; ++jj) {
         cf_strip there = *t;
         there.k = k;
-        FOR_PIECES(s, &there, jj, q) {
+        CF_FOR_PIECES(s, &there, jj, q) {
           if (gathering && q.edge)
             gather(dim, 1, s, &q, coarse);
           else if (gathering)
@@ -428,7 +266,7 @@ CF_KERNEL void spread(const cf_split *s, const float *line, const int side, int 
   for (int m = from; m < end; ++m) e[m] += 0.75f * line[m] + 0.25f * line[m + side];
 }
 
-CF_KERNEL void spread_edge(const int dim, const cf_segments *g, const piece *q, const mixture *x,
+CF_KERNEL void spread_edge(const int dim, const cf_segments *g, const cf_piece *q, const mixture *x,
                            const int parity, const int end, float *e) {
   const ptrdiff_t entry = cf_segment_entry(q->segment, parity, 0);
   const cf_spread_from from = {x->own,
@@ -461,11 +299,11 @@ CF_KERNEL void fetch_tables(const int dim, const cf_split *s, const cf_strip *t,
 CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t) {
   const cf_split *s = p->at;
   float *line = t->scratch;
-  piece q;
+  cf_piece q;
   CF_FOR_ROWS(j, t) {
     const mixture x = mixture_of(dim, p, j, t->k);
     if (t->next_k >= 0) fetch_tables(dim, s, t, j);
-    FOR_PIECES(s, t, j, q) {
+    CF_FOR_PIECES(s, t, j, q) {
       if (t->next_k >= 0) {
         cf_fetch_halves(s, &q.strip, s->e + cf_next_row(s, t, j));
         cf_fetch_halves(s, &q.strip, s->r + cf_next_row(s, t, j));
@@ -492,7 +330,6 @@ CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t) 
 BOTH(first, (const cf_split *s, const cf_strip *t, const float omega), s, t, omega)
 BOTH(last, (const cf_pass *p, const cf_strip *t, const float omega), p, t, omega)
 BOTH(update, (const cf_pass *p, const cf_strip *t, const float omega), p, t, omega)
-BOTH(form, (const cf_pass *p, const cf_strip *t), p, t)
 BOTH(restrict_rows, (const cf_pass *p, const cf_strip *t), p, t)
 BOTH(prolong_rows, (const cf_pass *p, const cf_strip *t), p, t)
 
@@ -512,7 +349,7 @@ void cf_stage_on_segments(const cf_pass *p, const int number, const cf_strip *t,
   const bool deep = s->dim == 3;
   switch (p->stage[number]) {
     case CF_PASS_FORM:
-      (deep ? form_3d : form_2d)(p, t);
+      cf_stage_form_on_segments(p, t);
       (deep ? first_3d : first_2d)(s, t, omega);
       break;
     case CF_PASS_FIRST:
