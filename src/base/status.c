@@ -16,7 +16,9 @@ static const struct {
 };
 
 /* A name that is quoted may hold what would steer a terminal. */
-static bool is_control(const char c) { return ((unsigned char)c < ' ' && c != '\n') || c == 0x7f; }
+static bool is_control(const char c) {
+  return ((unsigned char)c < ' ' && c != '\n' && c != '\t') || c == 0x7f;
+}
 
 cf_status cf_fail(const cf_status code, const char *format, ...) {
   /* The arguments may contain the sentence of a deeper failure: format aside, then copy. */

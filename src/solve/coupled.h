@@ -134,8 +134,9 @@ void cf_coupled_spread(const cf_coupled *coarse, const cf_coupled *l, const cf_r
  * the constant of its island. */
 void cf_coupled_lift_odds(const cf_coupled *coarse, const cf_coupled *l);
 
-/* e += coarse->e of the parent: the transpose of restriction. */
-void cf_coupled_prolong_back(const cf_coupled *coarse, const cf_coupled *l);
+/* For a cycle that must be symmetric: interpolation that knows nothing of alpha, and its transpose in place of sums. */
+void cf_coupled_prolong_alike(const cf_coupled *coarse, const cf_coupled *l);
+void cf_coupled_restrict_alike(const cf_coupled *l, const cf_coupled *coarse);
 
 /* Copies the outermost layers of f to the ghosts across periodic seams; of one axis. */
 void cf_coupled_wrap(const cf_coupled *l, float *f);

@@ -338,9 +338,9 @@ static void careful_cycle(const cf_varied *v, const int at) {
     return;
   }
   cf_coupled_smooth_first(l, 1, v->band_sweeps, true);
-  cf_coupled_restrict(l, &v->level[at + 1]);
+  cf_coupled_restrict_alike(l, &v->level[at + 1]);
   careful_cycle(v, at + 1);
-  cf_coupled_prolong_back(&v->level[at + 1], l);
+  cf_coupled_prolong_alike(&v->level[at + 1], l);
   cf_coupled_smooth_back(l, 1, v->band_sweeps);
 }
 

@@ -138,7 +138,8 @@ static bool tells(const cf_varied *v, const cf_varied_sums *s, const double enou
   return sizeof(cf_real) == sizeof(double) && ROUNDING_SEEN * floor_of(v, s) <= enough;
 }
 
-/* By stationary cycles, as far as they go. *done: the tolerance is met. x is what it was where b or A x is not finite. */
+/* By stationary cycles, as far as they go. *done: the tolerance is met. x is what it was where b or A x is not finite, or
+ * where cycles have made it worse. */
 static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                        cf_solve_report *report, bool *done) {
   const double bb = cf_varied_squares(v, b), tell = CF_CYCLES_TELL * CF_CYCLES_TELL;
@@ -146,12 +147,16 @@ static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o,
   cf_varied_sums s = {0, 0, 0};
   *done = false;
   if (!(bb > 0) || !isfinite(bb)) return CF_OK;
+  cf_varied_copy(v, x, v->best);
+  double start = INFINITY;
   for (double before = INFINITY;; before = s.second) {
     s = cf_varied_run_cycles(v, b, bb, &until, x, &report->iterations);
+    start = isinf(start) ? s.second : start;
     *done = s.first <= until.enough && tells(v, &s, until.enough);
     if (*done || s.first <= until.enough || !(s.second <= 0.25 * before) || !(s.first <= tell * s.second))
       break;
   }
+  if (!(s.first < start)) cf_varied_copy(v, v->best, x);
   restore_means(v, x);
   s.second = bb;
   return *done ? cf_varied_judge(v, &s, o, report) : CF_OK;

@@ -134,7 +134,7 @@ static bool fits(const cf_window *w, const frame *f) {
 
 /* --- runs of cells inside ------------------------------------------------------------------------------- */
 
-#define FOR_RUNS(w, r, q) \
+#define FOR_ROW_RUNS(w, r, q) \
   for (const cf_run *q = (w)->run + (w)->first[r]; q < (w)->run + (w)->first[(r) + 1]; ++(q))
 
 /* Where row r of the window begins in the large box. */
@@ -197,7 +197,7 @@ static void fetch(const cf_window *w, const cf_cell from, const cf_cell to) {
   CF_PARALLEL_ROWS (b, w->grid.threads, r) {
     const cf_real *there = from.at + outer_row(w, r);
     cf_real *here = to.at + cf_box_row(b, r);
-    FOR_RUNS (w, r, q) memcpy(here + q->low, there + q->low, (size_t)(q->high - q->low) * sizeof *here);
+    FOR_ROW_RUNS (w, r, q) memcpy(here + q->low, there + q->low, (size_t)(q->high - q->low) * sizeof *here);
   }
 }
 
@@ -206,7 +206,7 @@ static void bring(const cf_window *w, const cf_cell from, const cf_cell to) {
   CF_PARALLEL_ROWS (b, w->grid.threads, r) {
     const cf_real *here = from.at + cf_box_row(b, r);
     cf_real *there = to.at + outer_row(w, r);
-    FOR_RUNS (w, r, q) memcpy(there + q->low, here + q->low, (size_t)(q->high - q->low) * sizeof *here);
+    FOR_ROW_RUNS (w, r, q) memcpy(there + q->low, here + q->low, (size_t)(q->high - q->low) * sizeof *here);
   }
 }
 
@@ -215,7 +215,7 @@ static void clear(const cf_window *w, const cf_cell f) {
   const cf_box *b = &w->grid.box;
   CF_PARALLEL_ROWS (b, w->grid.threads, r) {
     cf_real *here = f.at + cf_box_row(b, r);
-    FOR_RUNS (w, r, q) memset(here + q->low, 0, (size_t)(q->high - q->low) * sizeof *here);
+    FOR_ROW_RUNS (w, r, q) memset(here + q->low, 0, (size_t)(q->high - q->low) * sizeof *here);
   }
 }
 
@@ -353,7 +353,7 @@ void cf_window_add_held(const cf_window *w, const cf_cell b) {
   CF_PARALLEL_ROWS (own, w->grid.threads, r) {
     const ptrdiff_t row = outer_row(w, r);
     const int j = w->low[1] + (int)(r % own->n[1]), k = w->low[2] + (int)(r / own->n[1]);
-    FOR_RUNS (w, r, q)
+    FOR_ROW_RUNS (w, r, q)
       for (int i = q->low; i < q->high; ++i)
         b.at[row + i] += (cf_real)cf_held_beside(&w->held, (int[]){w->low[0] + i, j, k}, row + i);
   }

@@ -46,10 +46,11 @@ static void a_long_sentence_is_cut_not_overrun(void **state) {
 
 static void a_sentence_steers_no_terminal(void **state) {
   (void)state;
-  assert_int_equal(cf_fail(CF_BAD_FILE, "%s: not a scene", "\033[2Ja\r\tb\x7f.yaml"), CF_BAD_FILE);
+  assert_int_equal(cf_fail(CF_BAD_FILE, "%s: not a scene", "\033[2Ja\r\bb\x7f.yaml"), CF_BAD_FILE);
   assert_string_equal(cf_status_sentence(), "?[2Ja??b?.yaml: not a scene");
-  assert_int_equal(cf_fail(CF_BAD_FILE, "%s", "f\303\274r\nzwei"), CF_BAD_FILE);
-  assert_string_equal(cf_status_sentence(), "f\303\274r\nzwei"); /* letters of UTF-8 and ends of lines stay */
+  assert_int_equal(cf_fail(CF_BAD_FILE, "%s", "f\303\274r\n\tzwei"), CF_BAD_FILE);
+  assert_string_equal(cf_status_sentence(),
+                      "f\303\274r\n\tzwei"); /* letters of UTF-8, ends of lines and tabs stay */
 }
 
 static void sentences_belong_to_their_thread(void **state) {
