@@ -92,15 +92,10 @@ static cf_status make_tables(cf_gel *g) {
   return CF_OK;
 }
 
-/* Where particles may be split there is room for as many times of them; it is no memory until it is used. */
-#define ROOM_TO_SPLIT 4
-
 static cf_status make_particles(cf_gel *g) {
   const int dim = g->grid->box.dim;
   const char *cube = "";
-  double room = CF_MAX(16, cf_gel_count(g->scene));
-  if (g->keys->split > 0) room = CF_MAX(room, CF_MIN(ROOM_TO_SPLIT * room, INT32_MAX));
-  CF_TRY(cf_particles_create(&g->set, "gel", dim, (int64_t)room));
+  CF_TRY(cf_particles_create(&g->set, "gel", dim, (int64_t)cf_gel_room(g->scene)));
   CF_TRY(cf_mpm_attributes_add(g->set, &g->at));
   CF_TRY(cf_particles_attribute(g->set, "saturation", cube, 1, CF_DERIVED, &g->saturation));
   CF_TRY(cf_particles_attribute(g->set, "J", cube, 1, CF_DERIVED, &g->jacobian));

@@ -50,6 +50,7 @@ double cf_gel_count(const cf_scene *scene);
 
 /* gel_scene.c */
 cf_status cf_gel_resolve(cf_scene *scene);
+double cf_gel_room(const cf_scene *scene); /* for so many particles, split ones among them */
 double cf_gel_memory(const cf_scene *scene);
 cf_status cf_gel_check(const cf_scene *scene, double dt, const cf_page *page);
 cf_mpm_material cf_gel_material(const cf_scene *scene, int body);

@@ -117,12 +117,29 @@ cf_status cf_gel_resolve(cf_scene *scene) {
 
 /* --- what it takes ----------------------------------------------------------------------------------------- */
 
+/* Where particles may be split there is room for as many times of them. */
+#define ROOM_TO_SPLIT 4
+
+double cf_gel_room(const cf_scene *scene) {
+  const double count = CF_MAX(16, cf_gel_count(scene));
+  return scene->gel.split > 0 ? CF_MAX(count, CF_MIN(ROOM_TO_SPLIT * count, INT32_MAX)) : count;
+}
+
+/* Of a cell with particles or near them: of the lattice's nodes, and of the solver with its window (solve/window.h); of cells
+ * around that what is shown may touch, in pages. */
+#define CELL_BYTES   1000.0
+#define AROUND       16
+#define SHOWN_FIELDS 8
+
 double cf_gel_memory(const cf_scene *scene) {
   const int dim = scene->dim;
-  const double numbers = 4 * dim + 3 * dim * dim + 11, count = cf_gel_count(scene);
+  const double numbers = 4 * dim + 3 * dim * dim + 11;
   /* a cell for `particles` to the power dim of them, and as many again around the surface */
-  const double cells = 3 * count / pow((double)scene->gel.particles, dim);
-  return count * (numbers * sizeof(cf_real) + 24) + cells * (8 + 24) * sizeof(cf_real) + 32e6;
+  const double cells = 3 * cf_gel_count(scene) / pow((double)scene->gel.particles, dim);
+  double box = 1;
+  for (int a = 0; a < dim; ++a) box *= (double)scene->domain.cells.value[a];
+  return cf_gel_room(scene) * (numbers * sizeof(cf_real) + 24) + cells * CELL_BYTES +
+         SHOWN_FIELDS * CF_MIN(box, AROUND * cells) * sizeof(cf_real) + 64e6;
 }
 
 /* The stretch s at which a free body with S = 1 is at rest, 2 mu (s - 1) s + lambda (s^d - 1) s^d = chi (fixed corotated; a

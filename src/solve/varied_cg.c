@@ -133,13 +133,17 @@ static void approach(cf_varied *v, const cf_cell b, const double enough, const i
   }
 }
 
+/* Cycles have done harm if they leave so many times the residual (in squares) that they began with. A few times more of it may
+ * stand for an error that is smaller. */
+#define HARM 1e4
+
 /* Whether the residual that cycles have kept is the true one: it does not see how x is rounded. */
 static bool tells(const cf_varied *v, const cf_varied_sums *s, const double enough) {
   return sizeof(cf_real) == sizeof(double) && ROUNDING_SEEN * floor_of(v, s) <= enough;
 }
 
 /* By stationary cycles, as far as they go. *done: the tolerance is met. x is what it was where b or A x is not finite, or
- * where cycles have made it worse. */
+ * where cycles have done harm. */
 static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                        cf_solve_report *report, bool *done) {
   const double bb = cf_varied_squares(v, b), tell = CF_CYCLES_TELL * CF_CYCLES_TELL;
@@ -156,7 +160,7 @@ static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o,
     if (*done || s.first <= until.enough || !(s.second <= 0.25 * before) || !(s.first <= tell * s.second))
       break;
   }
-  if (!(s.first < start)) cf_varied_copy(v, v->best, x);
+  if (!(s.first <= HARM * start)) cf_varied_copy(v, v->best, x);
   restore_means(v, x);
   s.second = bb;
   return *done ? cf_varied_judge(v, &s, o, report) : CF_OK;
