@@ -92,14 +92,19 @@ static double k_at(const solve_case *c, const int at[3], const double jump) {
   return sum % 2 == 0 ? 1 : jump;
 }
 
-static void jump(const solve_case *c, const solve_setup *s, const double by) {
-  for (int a = 0; a < c->dim; ++a)
-    for (int k = 0; k < c->n[2] + (a == 2); ++k)
-      for (int j = 0; j < c->n[1] + (a == 1); ++j)
-        for (int i = 0; i < c->n[0] + (a == 0); ++i) {
+/* Poisson's equation with that. */
+static void jump(const int dim, const double by, solve_setup *s) {
+  const int n = dim == 2 ? 96 : 28;
+  const solve_case c = {
+      .dim = dim, .n = {n, n, dim == 3 ? n : 1}, .walls = "iii", .sigma = INFINITY, .beta = BETA_SMOOTH};
+  case_begin(&c, s);
+  for (int a = 0; a < c.dim; ++a)
+    for (int k = 0; k < c.n[2] + (a == 2); ++k)
+      for (int j = 0; j < c.n[1] + (a == 1); ++j)
+        for (int i = 0; i < c.n[0] + (a == 0); ++i) {
           const int here[3] = {i, j, k}, before[3] = {i - (a == 0), j - (a == 1), k - (a == 2)};
           s->beta.at[a][cf_box_at(&s->g.box, i, j, k)] =
-              (cf_real)(2 / (1 / k_at(c, here, by) + 1 / k_at(c, before, by)));
+              (cf_real)(2 / (1 / k_at(&c, here, by) + 1 / k_at(&c, before, by)));
         }
   const cf_coefficients all = {.beta_at = &s->beta};
   OK(cf_helmholtz_set(s->A, &all));
@@ -108,13 +113,9 @@ static void jump(const solve_case *c, const solve_setup *s, const double by) {
 static void a_jump_of_a_thousand_is_solved_for(void **state) {
   (void)state;
   for (int dim = 2; dim <= 3; ++dim) {
-    const int n = dim == 2 ? 96 : 28;
-    const solve_case c = {
-        .dim = dim, .n = {n, n, dim == 3 ? n : 1}, .walls = "iii", .sigma = INFINITY, .beta = BETA_SMOOTH};
     solve_setup s;
     cf_solve_report report;
-    case_begin(&c, &s);
-    jump(&c, &s, 1000);
+    jump(dim, 1000, &s);
     OK(cf_helmholtz_solve(s.A, s.b, &(cf_solve_options){1e-6, 300}, s.x, &report));
     print_message("%dD: %d iterations\n", dim, report.iterations);
     assert_true(report.converged);
@@ -129,13 +130,9 @@ static void a_jump_of_a_million_does_no_harm(void **state) {
   static const int iterations[] = {1, 2, 5, 30};
   for (int dim = 2; dim <= 3; ++dim)
     for (int v = 0; v < 4; ++v) {
-      const int n = dim == 2 ? 96 : 28;
-      const solve_case c = {
-          .dim = dim, .n = {n, n, dim == 3 ? n : 1}, .walls = "iii", .sigma = INFINITY, .beta = BETA_SMOOTH};
       solve_setup s;
       cf_solve_report report;
-      case_begin(&c, &s);
-      jump(&c, &s, 1e6);
+      jump(dim, 1e6, &s);
       OK(cf_helmholtz_solve(s.A, s.b, &(cf_solve_options){1e-6, iterations[v]}, s.x, &report));
       BELOW(cf_helmholtz_residual(s.A, s.x, s.b), 1.001);
       case_end(&s);
