@@ -100,16 +100,17 @@ static int fill_row_of(const cf_coupled *l, const source *s) {
   return flags | ends;
 }
 
-static source source_of(const cf_varied *v, const cf_coefficients *c, const int j, const int k) {
+static source source_of(const cf_varied *v, const cf_coefficients *c, const int j, const int k,
+                        const cf_open_row *to) {
   const cf_coupled *l = &v->level[0];
   const ptrdiff_t p = cf_box_at(&l->box, 0, j, k);
   const int at[3] = {0, j, k};
   source s = {.beta_number = c->beta,
               .scale = v->scale,
               .inner = 1 / (v->A->grid.h * v->A->grid.h),
-              .free = l->free + p,
-              .held = l->held + p,
-              .inverse = l->inverse + p,
+              .free = to->free,
+              .held = to->held,
+              .inverse = to->inverse,
               .last = l->box.n[0] - 1};
   for (int a = 0; a < l->dim; ++a) {
     const int last = l->box.n[a] - 1;
@@ -120,13 +121,13 @@ static source source_of(const cf_varied *v, const cf_coefficients *c, const int 
     s.high_wall[a] = high && !around ? (double)v->hi[a][last] : 0;
     s.stride[a] = l->box.stride[a];
     s.beta[a] = c->beta_at != NULL ? c->beta_at->at[a] + p : NULL;
-    s.c[a] = l->c[a] + p;
+    s.c[a] = to->c[a];
   }
   return s;
 }
 
 /* No cell of the level bears a mark. */
-static bool is_bare(const cf_coupled *l) { return l->tiles == NULL && !l->has_band && l->odds == 0; }
+bool cf_open_is_bare(const cf_coupled *l) { return l->tiles == NULL && !l->has_band && l->odds == 0; }
 
 static void take(cf_coupled *l, const int flags) {
   l->is_open = !(flags & CLOSED);
@@ -134,18 +135,34 @@ static void take(cf_coupled *l, const int flags) {
   l->is_fixed = flags & FIXED;
 }
 
+int cf_open_fill_row(const cf_varied *v, const cf_coefficients *c, const int j, const int k,
+                     const cf_open_row *to) {
+  const cf_coupled *l = &v->level[0];
+  const source s = source_of(v, c, j, k, to);
+  fill_free(l->box.n[0], c->alpha_at != NULL ? c->alpha_at->at + cf_box_at(&l->box, 0, j, k) : NULL, c->alpha,
+            v->scale, s.free);
+  return fill_row_of(l, &s);
+}
+
+bool cf_open_take(cf_varied *v, const int flags) {
+  take(&v->level[0], flags);
+  return v->level[0].is_open;
+}
+
 bool cf_open_fill(cf_varied *v, const cf_coefficients *c) {
   cf_coupled *l = &v->level[0];
   l->is_open = false;
-  if (v->region != NULL || !is_bare(l)) return false;
+  if (v->region != NULL || !cf_open_is_bare(l)) return false;
   int flags = 0;
 #pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(l)) reduction(| : flags)
   for (ptrdiff_t r = 0; r < l->rows; ++r)
     CF_TILE_ROWS (l, r, j, k) {
-      const source s = source_of(v, c, j, k);
-      fill_free(l->box.n[0], c->alpha_at != NULL ? c->alpha_at->at + cf_box_at(&l->box, 0, j, k) : NULL,
-                c->alpha, v->scale, s.free);
-      flags |= fill_row_of(l, &s);
+      const ptrdiff_t p = cf_box_at(&l->box, 0, j, k);
+      const cf_open_row to = {{l->c[0] + p, l->c[1] + p, l->dim == 3 ? l->c[2] + p : NULL},
+                              l->free + p,
+                              l->held + p,
+                              l->inverse + p};
+      flags |= cf_open_fill_row(v, c, j, k, &to);
     }
   take(l, flags);
   for (int a = 0; a < l->dim && l->is_open; ++a) cf_coupled_wrap_axis(l, a, l->c[a]);
@@ -294,11 +311,21 @@ static int invert_row(const cf_coupled *l, const ptrdiff_t p) {
 }
 
 static bool can_coarsen(const cf_coupled *l, const cf_coupled *coarse) {
-  if (!l->is_open || !is_bare(l) || !is_bare(coarse) || coarse->excess[0] != 0 || coarse->excess[1] != 0)
+  if (!l->is_open || !cf_open_is_bare(l) || !cf_open_is_bare(coarse) || coarse->excess[0] != 0 ||
+      coarse->excess[1] != 0)
     return false;
   for (int a = 0; a < l->dim; ++a)
     if (l->coarsened[a] && l->box.n[a] % 2 == 1) return false;
   return true;
+}
+
+void cf_open_finish(cf_coupled *coarse) {
+  int flags = 0;
+  for (int a = 0; a < coarse->dim; ++a) cf_coupled_wrap_axis(coarse, a, coarse->c[a]);
+#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(coarse)) reduction(| : flags)
+  for (ptrdiff_t v = 0; v < coarse->rows; ++v)
+    CF_TILE_ROWS (coarse, v, J, K) flags |= invert_row(coarse, cf_box_at(&coarse->box, 0, J, K));
+  take(coarse, flags);
 }
 
 bool cf_open_coarsen(cf_coupled *l, cf_coupled *coarse) {
@@ -308,7 +335,6 @@ bool cf_open_coarsen(cf_coupled *l, cf_coupled *coarse) {
   bool all = true;
   for (int a = 0; a < l->dim; ++a) all = all && (l->coarsened[a] || l->box.n[a] == 1);
   const float held_share = all ? 0.5f : 1;
-  int flags = 0;
   CF_PARALLEL_COUPLED (coarse, v)
     CF_TILE_ROWS (coarse, v, J, K) {
       rows r = {l, coarse, {0, J, K}, 0, {0}, cf_box_at(&coarse->box, 0, J, K)};
@@ -316,10 +342,6 @@ bool cf_open_coarsen(cf_coupled *l, cf_coupled *coarse) {
         for (int jj = 0; jj <= y; ++jj) r.p[r.count++] = cf_box_at(&l->box, 0, (J << y) + jj, (K << z) + kk);
       fill_row(&r, held_share);
     }
-  for (int a = 0; a < l->dim; ++a) cf_coupled_wrap_axis(coarse, a, coarse->c[a]);
-#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(coarse)) reduction(| : flags)
-  for (ptrdiff_t v = 0; v < coarse->rows; ++v)
-    CF_TILE_ROWS (coarse, v, J, K) flags |= invert_row(coarse, cf_box_at(&coarse->box, 0, J, K));
-  take(coarse, flags);
+  cf_open_finish(coarse);
   return true;
 }

@@ -90,7 +90,7 @@ static cf_status pockets_room(cf_pockets *q, const cf_coupled *l) {
 
 cf_status cf_pockets_take_all(cf_pockets *q, const cf_coupled *l) {
   q->count = 1;
-  q->single = true;
+  q->single = q->all = true;
   q->widest = 0;
   CF_TRY(pockets_room(q, l));
   q->cells[0] = (double)cf_box_cells(&l->box);
@@ -152,6 +152,7 @@ static cf_status count_cells(cf_pockets *q, const cf_coupled *l) {
 
 cf_status cf_pockets_find(cf_pockets *q, const cf_coupled *l, const bool loose) {
   q->count = 0;
+  q->all = false;
   if (q->label == NULL) {
     void *pages;
     CF_TRY(cf_pages_reserve(&pages, (size_t)l->box.size * sizeof *q->label, l->tiles == NULL));
@@ -192,6 +193,11 @@ CF_CLONES static void add_run(const int n, const float *inverse, const cf_real *
 }
 
 CF_CLONES static void shift_run(const int n, const float *inverse, const double by, cf_real *f) {
+  if (inverse == NULL) {
+    CF_ROW_LOOP
+    for (int i = 0; i < n; ++i) f[i] = (cf_real)((double)f[i] - by);
+    return;
+  }
   CF_ROW_LOOP
   for (int i = 0; i < n; ++i) f[i] = inverse[i] > 0 ? (cf_real)((double)f[i] - by) : f[i];
 }
@@ -209,11 +215,16 @@ static void sum_rows(const cf_pockets *q, const cf_coupled *l, const cf_cell f) 
     CF_TILE_ROWS (l, v, j, k) {
       double lane[CF_SUM_LANES] = {0};
       if (!q->plain[j + (ptrdiff_t)l->box.n[1] * k]) continue;
+      double *sum = &q->rows[j + (ptrdiff_t)l->box.n[1] * k];
+      if (q->all) {
+        *sum = cf_sweep_row_sum(l->box.n[0], f.at + cf_box_at(&l->box, 0, j, k));
+        continue;
+      }
       CF_TILE_RUNS (l, v, run) {
         const ptrdiff_t p = cf_box_at(&l->box, run->low, j, k);
         add_run(run->high - run->low, l->inverse + p, f.at + p, lane);
       }
-      q->rows[j + (ptrdiff_t)l->box.n[1] * k] = cf_sum_lanes(lane);
+      *sum = cf_sum_lanes(lane);
     }
 }
 
@@ -251,7 +262,8 @@ static void shift(const cf_pockets *q, const cf_coupled *l, const bool kept, con
         const ptrdiff_t row = cf_box_at(&l->box, 0, j, k), end = row + run->high;
         ptrdiff_t p = row + run->low;
         if (q->plain[j + (ptrdiff_t)l->box.n[1] * k]) {
-          shift_run(run->high - run->low, l->inverse + p, excess_of(q, q->widest, kept), f.at + p);
+          shift_run(run->high - run->low, q->all ? NULL : l->inverse + p, excess_of(q, q->widest, kept),
+                    f.at + p);
           continue;
         }
         for (ptrdiff_t to; p < end; p = to) {

@@ -22,6 +22,7 @@ typedef struct cf_pockets {
   unsigned char
       *plain;   /* whether row j + n[1] k is such a row: all of its cells that have an equation are in it */
   double *rows; /* then what the row sums to */
+  bool all;     /* it is every cell of the box */
   bool single;  /* there is one pocket, and every cell that has an equation is in it */
   int64_t followed; /* the update of the tiles that the labels are right for */
 } cf_pockets;

@@ -39,6 +39,7 @@ typedef struct cf_split {
   ptrdiff_t first, size;              /* elements before cell (0, 0, 0); of the array */
   float *e, *r;                       /* correction and residual, at cell (0, 0, 0) */
   const struct cf_segments *segments; /* NULL: the whole box */
+  const struct cf_fields *fields;     /* NULL: coefficients are numbers */
   bool has_seam;                      /* some axis is periodic */
   bool odd_seam; /* ... with an odd number of cells: neighbours across the seam share a colour */
   bool wraps

@@ -28,6 +28,10 @@ void cf_stage_run(const cf_pass *p, const int number, const cf_strip *t) {
     cf_stage_on_segments(p, number, t, omega);
     return;
   }
+  if (s->fields != NULL) {
+    cf_stage_on_fields(p, number, t, omega);
+    return;
+  }
   switch (p->stage[number]) {
     case CF_PASS_FORM:
       cf_stage_form(p, t);
@@ -47,6 +51,7 @@ void cf_stage_run(const cf_pass *p, const int number, const cf_strip *t) {
       break;
     case CF_PASS_RED_EDGES: /* only segments have any */
     case CF_PASS_BLACK_EDGES:
+    case CF_PASS_ADD: /* only levels of fields do so */
       break;
     case CF_PASS_LAST:
       cf_stage_last(s, t, omega);

@@ -11,6 +11,7 @@
  *     RED_EDGES, BLACK_EDGES  the same on edge segments (segments.h) alone
  *     LAST         a black half sweep that leaves the residual behind in r
  *     UPDATE       red: r -= A' e; all: x += gain e, and the sum of r^2; then FIRST on the new r
+ *     ADD          x += gain e, on levels of fields alone (fields.h)
  *     RESTRICT     the residual of SECOND, averaged over the children of a coarse cell; FIRST on the coarse level
  *     RESTRICT_RED the same after a black half sweep with omega = 1, which leaves nothing on black cells
  *     PROLONG      e += interpolated correction of the coarse level; on black cells alone if the red half sweep that
@@ -40,6 +41,7 @@ typedef enum cf_pass_stage {
   CF_PASS_RED_EDGES,
   CF_PASS_BLACK_EDGES,
   CF_PASS_LAST,
+  CF_PASS_ADD,
   CF_PASS_UPDATE,
   CF_PASS_RESTRICT,
   CF_PASS_RESTRICT_RED,
@@ -65,7 +67,7 @@ typedef enum cf_pass_sum {
 
 typedef struct cf_pass {
   const cf_split *at, *coarse;    /* coarse: NULL on the coarsest level */
-  const struct cf_coupled *below; /* the coarse level of a level that has segments */
+  const struct cf_coupled *below; /* the coarse level of one that has segments or fields */
   int count;
   cf_pass_stage stage[CF_PASS_STAGES];
   float omega[CF_PASS_STAGES]; /* of the half sweep; 0: the level's */

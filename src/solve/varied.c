@@ -10,6 +10,7 @@
 #include "grid/halo.h"
 #include "solve/amend.h"
 #include "solve/held.h"
+#include "solve/open.h"
 #include "solve/setting.h"
 #include "solve/varied_part.h"
 
@@ -40,6 +41,7 @@ static void release(cf_varied *v) {
     cf_renewal_clear(&v->renewal, &v->level[0]);
   }
   for (int l = 0; l < v->levels; ++l) cf_coupled_destroy(&v->level[l]);
+  cf_fields_destroy(&v->fields);
   v->levels = 0;
   v->loose_stamp = 0;
   cf_band_destroy(&v->band);
@@ -219,12 +221,28 @@ static cf_status next_part(cf_varied *v, const int at, const bool all, cf_part *
   return CF_OK;
 }
 
+/* The finest level and the one below it, if they can be so. */
+static cf_status part_by_colour(cf_varied *v, const cf_coefficients *c) {
+  cf_coupled *l = &v->level[0];
+  v->apart = false;
+  if (c->region != NULL || v->depth < 2 || !cf_fields_suit(l) || !cf_open_is_bare(&v->level[1])) return CF_OK;
+  if (v->fields.of == NULL) CF_TRY(cf_fields_create(&v->fields, v, &v->A->level[0]));
+  if (!cf_fields_fill(v, c)) return CF_OK;
+  v->fields.is_gentle = l->is_gentle;
+  cf_fields_coarsen(v);
+  v->apart = true;
+  return CF_OK;
+}
+
 static cf_status make_levels(cf_varied *v, const cf_coefficients *c, const bool all) {
   cf_part w;
   v->renewed = 0;
-  CF_TRY(next_part(v, 0, all, &w));
-  CF_TRY(cf_varied_fill(v, c, &w));
-  for (int at = 1; at < v->depth; ++at) {
+  CF_TRY(part_by_colour(v, c));
+  if (!v->apart) {
+    CF_TRY(next_part(v, 0, all, &w));
+    CF_TRY(cf_varied_fill(v, c, &w));
+  }
+  for (int at = v->apart ? 2 : 1; at < v->depth; ++at) {
     cf_coupled *l = &v->level[at - 1], *coarse = &v->level[at];
     CF_TRY(cf_coarsen_follow(l, coarse));
     if (!all) cf_renewal_descend(&v->renewal, l);
@@ -235,6 +253,17 @@ static cf_status make_levels(cf_varied *v, const cf_coefficients *c, const bool 
     CF_TRY(cf_coarsen(l, coarse, &w));
   }
   return is_eliminated(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;
+}
+
+/* What make_levels would have made without this way of its own: level[0], and what is below it again. */
+cf_status cf_varied_make_plain(cf_varied *v) {
+  const cf_coefficients c = {.alpha = v->alpha_number,
+                             .beta = v->beta_number,
+                             .alpha_at = v->alpha.at != NULL ? &v->alpha : NULL,
+                             .beta_at = v->given_beta.at[0] != NULL ? &v->given_beta : NULL};
+  const cf_part all = cf_coupled_all(&v->level[0]), coarse = cf_coupled_all(&v->level[1]);
+  CF_TRY(cf_varied_fill(v, &c, &all));
+  return cf_coarsen(&v->level[0], &v->level[1], &coarse);
 }
 
 static cf_status find_pockets(cf_varied *v) {

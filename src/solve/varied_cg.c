@@ -166,6 +166,32 @@ static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o,
   return *done ? cf_varied_judge(v, &s, o, report) : CF_OK;
 }
 
+/* By conjugate gradients, from where x is. */
+static cf_status gradients(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
+                           cf_solve_report *report) {
+  cf_varied_sums s = cf_varied_form(v, x, b);
+  CF_TRY(cf_varied_judge(v, &s, o, report));
+  if (s.second == 0) {
+    cf_varied_clear(v, x);
+    return CF_OK;
+  }
+  v->careful = v->thorough = false;
+  v->band_sweeps = (cf_band_sweeps){BAND_SWEEPS, 1}; /* over-relaxed ones do harm in necks of a cell */
+  approach(v, b, o->tolerance * o->tolerance * s.second, o->max_iterations, x, &s, &report->iterations);
+  return cf_varied_judge(v, &s, o, report);
+}
+
+/* They work on level[0]. */
+static cf_status go_on(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
+                       cf_solve_report *report) {
+  const bool apart = v->apart;
+  if (apart) CF_TRY(cf_varied_make_plain(v));
+  v->apart = false;
+  const cf_status s = gradients(v, b, o, x, report);
+  v->apart = apart;
+  return s;
+}
+
 cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                           cf_solve_report *report) {
   if (v->sweeps) return cf_varied_sweep(v, b, o, x, report);
@@ -178,19 +204,7 @@ cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options 
     cf_pockets_restore_means(&v->loose, l, x);
   }
   report->pockets = v->pockets.count;
-  if (cf_varied_can_cycle(v)) {
-    bool done;
-    CF_TRY(cycle(v, b, o, x, report, &done));
-    if (done) return CF_OK;
-  }
-  cf_varied_sums s = cf_varied_form(v, x, b);
-  CF_TRY(cf_varied_judge(v, &s, o, report));
-  if (s.second == 0) {
-    cf_varied_clear(v, x);
-    return CF_OK;
-  }
-  v->careful = v->thorough = false;
-  v->band_sweeps = (cf_band_sweeps){BAND_SWEEPS, 1}; /* over-relaxed ones do harm in necks of a cell */
-  approach(v, b, o->tolerance * o->tolerance * s.second, o->max_iterations, x, &s, &report->iterations);
-  return cf_varied_judge(v, &s, o, report);
+  bool done = false;
+  if (cf_varied_can_cycle(v)) CF_TRY(cycle(v, b, o, x, report, &done));
+  return done ? CF_OK : go_on(v, b, o, x, report);
 }

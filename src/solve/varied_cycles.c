@@ -90,11 +90,7 @@ SQUARES(squares_single, float)
 
 /* --- passes ------------------------------------------------------------------------------------------- */
 
-typedef struct work {
-  const cf_varied *v;
-  cf_cell x, b;
-  double unit;
-} work;
+typedef cf_cycling work;
 
 /* The place of a row's sums: the first, and a box's rows further the second. */
 static double *sum_of(const cf_varied *v, const int j, const int k) {
@@ -147,8 +143,7 @@ static void add_up(cf_coupled_pass *s, const int halves) {
   cf_pass_add_halves(s, halves, 0, OMEGA);
 }
 
-/* Level[at].e from level[at].r, `at` below the finest one: a W-cycle. */
-static void correct(const cf_varied *v, const int at) {
+void cf_varied_correct(const cf_varied *v, const int at) {
   const cf_coupled *l = &v->level[at];
   if (at == v->depth - 1) {
     cf_varied_cycle(v, at);
@@ -157,12 +152,12 @@ static void correct(const cf_varied *v, const int at) {
   cf_coupled_pass s = {.l = l, .coarse = l + 1};
   add_down(&s, COARSE_BEFORE);
   cf_coupled_run(&s, false);
-  correct(v, at + 1);
+  cf_varied_correct(v, at + 1);
   s.count = 0;
   add_up(&s, 2);
   cf_pass_add(&s, CF_STAGE_SUM, 0, 1);
   cf_coupled_run(&s, false);
-  correct(v, at + 1);
+  cf_varied_correct(v, at + 1);
   s.count = 0;
   add_up(&s, COARSE_AFTER);
   cf_coupled_run(&s, false);
@@ -181,50 +176,67 @@ static ptrdiff_t bytes_of(const cf_varied *v) {
   return fields * (ptrdiff_t)sizeof(cf_real);
 }
 
-bool cf_varied_can_cycle(const cf_varied *v) { return v->depth > 1 && v->level[0].is_open; }
+bool cf_varied_can_cycle(const cf_varied *v) { return v->apart || (v->depth > 1 && v->level[0].is_open); }
 
 /* After a pass. */
-static cf_varied_sums sums_of(const work *w) {
-  cf_varied_sums s = cf_varied_add_up(w->v, 2);
-  return (cf_varied_sums){s.first / (w->unit * w->unit), 0, s.second};
+static void take_sums(work *w) {
+  const cf_varied_sums s = cf_varied_add_up(w->v, 2);
+  w->rr = s.first / (w->unit * w->unit);
+  w->xx = s.second;
 }
 
-cf_varied_sums cf_varied_run_cycles(const cf_varied *v, const cf_cell b, const double bb,
-                                    const cf_cycles_until *until, const cf_cell x, int *iterations) {
-  const cf_coupled *l = &v->level[0];
-  work w = {v, x, b, 1};
-  int exponent;
-  (void)frexp(sqrt(bb / (double)cf_box_cells(&l->box)), &exponent);
-  w.unit = ldexp(1, CF_MAX(-1000, CF_MIN(1000, -exponent)));
-  cf_coupled_pass s = {.l = l, .coarse = l + 1, .of = &w, .own_bytes = bytes_of(v)};
-  cf_varied_set_ghosts(v, x);
+static cf_coupled_pass pass_of(const work *w) {
+  const cf_coupled *l = &w->v->level[0];
+  return (cf_coupled_pass){.l = l, .coarse = l + 1, .of = w, .own_bytes = bytes_of(w->v)};
+}
+
+static void begin_all(work *w) {
+  cf_coupled_pass s = pass_of(w);
+  cf_varied_set_ghosts(w->v, w->x);
   s.own = begin_run;
   cf_pass_add(&s, CF_STAGE_OWN, 0, 1);
   add_down(&s, BEFORE);
   cf_coupled_run(&s, false);
-  cf_varied_sums now = sums_of(&w);
-  const double begun = now.first, target = CF_MAX(until->enough, CF_CYCLES_TELL * CF_CYCLES_TELL * begun);
-  double rate = 1, most = FIRST_MOST;
+  take_sums(w);
+}
+
+static void go_down(work *w) {
+  cf_coupled_pass s = pass_of(w);
+  add_down(&s, BEFORE);
+  cf_coupled_run(&s, false);
+}
+
+static void go_up(work *w, const bool last) {
+  cf_coupled_pass s = pass_of(w);
+  cf_varied_correct(w->v, 1);
   s.own = advance_run;
-  while (now.first > target && *iterations < until->limit) {
-    const double before = now.first;
-    const bool last = HOPE * before * rate <= target;
-    correct(v, 1);
-    s.count = 0;
-    add_up(&s, AFTER);
-    cf_pass_add(&s, CF_STAGE_OWN, 0, 1);
-    if (!last) add_down(&s, BEFORE);
-    cf_coupled_run(&s, false);
-    now = sums_of(&w);
+  add_up(&s, AFTER);
+  cf_pass_add(&s, CF_STAGE_OWN, 0, 1);
+  if (!last) add_down(&s, BEFORE);
+  cf_coupled_run(&s, false);
+  take_sums(w);
+}
+
+cf_varied_sums cf_varied_run_cycles(const cf_varied *v, const cf_cell b, const double bb,
+                                    const cf_cycles_until *until, const cf_cell x, int *iterations) {
+  work w = {.v = v, .x = x, .b = b};
+  int exponent;
+  (void)frexp(sqrt(bb / (double)cf_box_cells(&v->level[0].box)), &exponent);
+  w.unit = ldexp(1, CF_MAX(-1000, CF_MIN(1000, -exponent)));
+  w.target = until->enough;
+  (v->apart ? cf_fields_begin : begin_all)(&w);
+  const double begun = w.rr;
+  double rate = 1, most = FIRST_MOST;
+  w.target = CF_MAX(until->enough, CF_CYCLES_TELL * CF_CYCLES_TELL * begun);
+  while (w.rr > w.target && *iterations < until->limit) {
+    const double before = w.rr;
+    const bool last = HOPE * before * rate <= w.target;
+    (v->apart ? cf_fields_go_up : go_up)(&w, last);
     ++*iterations;
-    rate = now.first / before;
+    rate = w.rr / before;
     if (!(rate <= most * most)) break;
     most = RATE_MOST;
-    if (!last || now.first <= target) continue;
-    s.count = 0;
-    add_down(&s, BEFORE);
-    cf_coupled_run(&s, false);
+    if (last && w.rr > w.target) (v->apart ? cf_fields_go_down : go_down)(&w);
   }
-  now.second = begun;
-  return now;
+  return (cf_varied_sums){w.rr, begun, w.xx};
 }

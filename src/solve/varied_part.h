@@ -7,6 +7,7 @@
 
 #include "solve/band.h"
 #include "solve/coarsen.h"
+#include "solve/fields.h"
 #include "solve/multigrid.h"
 #include "solve/pockets.h"
 #include "solve/renewal.h"
@@ -44,8 +45,10 @@ struct cf_varied {
   cf_cell r, p, Ap; /* of conjugate gradients */
   cf_cell best;     /* the solution that an iteration starts from */
   double scale;     /* of the levels: theirs over the equation's own */
-  double *sums;     /* three for every row of the box */
-  cf_run *busy[2];  /* of half sweeps: where x or b is not 0, per row of the box; and scratch */
+  bool apart;       /* the finest level is `fields`, and level[0] says no more than what it is like */
+  cf_fields fields;
+  double *sums;    /* three for every row of the box */
+  cf_run *busy[2]; /* of half sweeps: where x or b is not 0, per row of the box; and scratch */
 };
 
 /* --- from coefficients to couplings (varied_fill.c) ---------------------------------------------------- */
@@ -56,6 +59,9 @@ void cf_varied_find_range(const cf_varied *v, const cf_coefficients *c, double *
 
 /* Fills a part of the finest level and finishes it. CF_NO_MEMORY. */
 cf_status cf_varied_fill(cf_varied *v, const cf_coefficients *c, const cf_part *w);
+
+/* Fills level[0] where the finest level is apart by colour, for what works on couplings in natural order. CF_NO_MEMORY. */
+cf_status cf_varied_make_plain(cf_varied *v);
 
 /* --- the cycle and what it works on (varied.c) ---------------------------------------------------------- */
 
@@ -111,6 +117,25 @@ bool cf_varied_can_cycle(const cf_varied *v);
 
 /* The squares of f on all of the box. */
 double cf_varied_squares(const cf_varied *v, cf_cell f);
+
+/* Their state: r is in units of 1/unit; the squares of r, of x when they were formed last, and what the former is to be. */
+typedef struct cf_cycling {
+  const cf_varied *v;
+  cf_cell x, b;
+  double unit, rr, xx, target;
+} cf_cycling;
+
+/* r from x, and half sweeps before the first coarse correction; that correction, half sweeps after it, x and r, and unless it is
+ * thought to be the last one those before the next; these alone. On a finest level apart by colour (fields_cycle.c). */
+void cf_fields_begin(cf_cycling *w);
+void cf_fields_go_up(cf_cycling *w, bool last);
+void cf_fields_go_down(cf_cycling *w);
+
+/* The squares of b - A x, of b, and of x; r and e are scratch. */
+cf_varied_sums cf_fields_form(const cf_varied *v, cf_cell x, cf_cell b);
+
+/* level[at].e from level[at].r, `at` below the finest one: a W-cycle. */
+void cf_varied_correct(const cf_varied *v, int at);
 
 /* What ends them: the square of the residual, and all iterations. */
 typedef struct cf_cycles_until {

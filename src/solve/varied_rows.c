@@ -297,6 +297,6 @@ void cf_varied_apply(cf_varied *v, const cf_cell x, const cf_cell y) {
 }
 
 double cf_varied_residual(cf_varied *v, const cf_cell x, const cf_cell b) {
-  const cf_varied_sums s = cf_varied_form(v, x, b);
+  const cf_varied_sums s = v->apart ? cf_fields_form(v, x, b) : cf_varied_form(v, x, b);
   return s.second > 0 ? sqrt(s.first / s.second) : sqrt(s.first);
 }

@@ -204,7 +204,8 @@ static void run_tile(const cf_wave *w, const cf_pass *p, const window *win, cons
 /* Rows of a tile, so that its window fits the cache and all threads get as many tiles. */
 static int tile_height(const cf_split *s, const int rows, const int stages, const int threads) {
   const ptrdiff_t row = s->dim == 3 ? s->row : 2 * COLUMN;
-  const ptrdiff_t fits = WINDOW_BYTES / ((stages + 2) * row * 2 * (ptrdiff_t)sizeof(float));
+  const int floats = s->fields == NULL ? 2 : 3 + s->dim; /* e, r; 1/diagonal, couplings */
+  const ptrdiff_t fits = WINDOW_BYTES / ((stages + 2) * row * floats * (ptrdiff_t)sizeof(float));
   const int high = (int)CF_MIN(CF_MAX(fits, TILE_ROWS_MIN), rows);
   int tiles = (rows + high - 1) / high;
   tiles = (tiles + threads - 1) / threads * threads;
