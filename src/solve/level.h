@@ -10,8 +10,9 @@
  * is: 0 on an insulated wall, 1/(w * w/2) on a held one (the ghost behind it stays 0; values of a wall are
  * part of the right side), and the distance around the seam on a periodic axis. One cell does not go around: it is no neighbour of its own.
  *
- * Coarse cells are pairs of fine cells per axis; where the count is odd the last one is a triple, so every
- * extent coarsens down to 1 and a wall never moves. Hence widths vary (in the last cell of an axis), and the
+ * Coarse cells are pairs of fine cells per axis. Where the count is odd the last cell stays alone, or makes a triple where it
+ * is narrower than the others (transfer.h), so every extent coarsens down to 1 and a wall never moves. Triples on level after level
+ * would cost as many cycles again. Hence widths vary (in the last cell of an axis), and the
  * operator is self-adjoint in the inner product weighted with the cells' volumes.
  */
 #ifndef CF_SOLVE_LEVEL_H

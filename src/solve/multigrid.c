@@ -95,7 +95,8 @@ static bool axes_to_coarsen(const cf_level *l, bool coarsened[3]) {
 
 static cf_status coarser_create(cf_helmholtz *A, cf_level *fine, const bool coarsened[3], cf_level *l) {
   int n[3] = {1, 1, 1};
-  for (int a = 0; a < fine->box.dim; ++a) n[a] = coarsened[a] ? fine->box.n[a] / 2 : fine->box.n[a];
+  for (int a = 0; a < fine->box.dim; ++a)
+    n[a] = coarsened[a] ? cf_axis_coarse_count(&fine->axis[a]) : fine->box.n[a];
   CF_TRY(cf_box_init(&l->box, fine->box.dim, n, 1));
   l->threads = fine->threads;
   for (int a = 0; a < fine->box.dim; ++a)

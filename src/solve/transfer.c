@@ -95,9 +95,14 @@ static cf_status pairing_allocate(cf_pairing *p, const int n) {
   return CF_NEW(&p->share, n);
 }
 
+int cf_axis_coarse_count(const cf_axis *fine) {
+  const bool alone = fine->n % 2 == 1 && fine->width[fine->n - 1] >= fine->width[0];
+  return fine->n / 2 + (alone ? 1 : 0);
+}
+
 cf_status cf_axis_coarsen(const cf_axis *fine, const bool coarsened, const double h, cf_pairing *p,
                           cf_axis *coarse) {
-  const int n = coarsened ? fine->n / 2 : fine->n;
+  const int n = coarsened ? cf_axis_coarse_count(fine) : fine->n;
   p->coarsened = coarsened;
   CF_TRY(pairing_allocate(p, fine->n));
   CF_TRY(axis_allocate(coarse, n));
@@ -154,8 +159,10 @@ static void restrict_row(const cf_level *fine, const cf_real *r, const cf_level 
     memcpy(out, sum, (size_t)c->n[0] * sizeof *out);
     return;
   }
-  pair_row(c->n[0], sum, x->share, out);
-  if (f->n[0] > 2 * c->n[0]) out[c->n[0] - 1] += x->share[f->n[0] - 1] * sum[f->n[0] - 1];
+  const int pairs = f->n[0] / 2, last = f->n[0] - 1;
+  pair_row(pairs, sum, x->share, out);
+  if (c->n[0] > pairs) out[c->n[0] - 1] = 0;
+  if (last == 2 * pairs) out[c->n[0] - 1] += x->share[last] * sum[last];
 }
 
 void cf_level_restrict(const cf_level *fine, const cf_cell r, const cf_level *coarse, const cf_cell b,
@@ -195,10 +202,10 @@ static void prolong_row(const cf_level *coarse, const cf_real *x_c, const cf_lev
     add_scaled_row(n, 1, line, out);
     return;
   }
-  /* The pairs; a triple's middle child takes no neighbour and its last one is done apart. */
-  const bool triple = f->n[0] > 2 * n;
-  spread_row(triple ? n - 1 : n, line, x->weight[0], x->weight[1], out);
-  for (int i = triple ? 2 * (n - 1) : f->n[0]; i < f->n[0]; ++i)
+  /* The pairs; a triple and a single cell are done apart. */
+  const int pairs = CF_MIN(f->n[0] / 2, f->n[0] % 2 == 0 ? n : n - 1);
+  spread_row(pairs, line, x->weight[0], x->weight[1], out);
+  for (int i = 2 * pairs; i < f->n[0]; ++i)
     out[i] += x->weight[0][i] * line[x->parent[i]] + x->weight[1][i] * line[x->other[i]];
 }
 

@@ -12,6 +12,10 @@
 
 #include "solve/level.h"
 
+/* Cells of the coarser axis. Where the count is odd the last cell stays alone, unless it is narrower than the others: then it makes
+ * a triple with the two before it. So the last cell is half as wide as the others up to one and three eighths times. */
+int cf_axis_coarse_count(const cf_axis *fine);
+
 /* Fills the pairing of `fine` towards an axis of `coarse`, and makes the coarse axis itself.
  * CF_NO_MEMORY; what was allocated is freed with cf_axis_clear and cf_pairing_clear. */
 cf_status cf_axis_coarsen(const cf_axis *fine, bool coarsened, double h, cf_pairing *pairing,

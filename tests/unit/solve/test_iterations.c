@@ -128,6 +128,27 @@ static void counts_do_not_grow_with_the_box(void **state) {
   }
 }
 
+/* Extents that are not powers of two: the last cells of coarse levels are narrower or wider than the others. */
+static void odd_extents_cost_a_cycle_at_most(void **state) {
+  (void)state;
+  const int odd[][3] = {{63, 63, 63}, {65, 65, 65}, {61, 67, 59}, {57, 71, 61}, {255, 255, 1}, {251, 261, 1}};
+  for (int q = 0; q < 6; ++q)
+    for (int v = 0; v < 2; ++v)
+      for (int s = 0; s < 3; ++s) {
+        const int dim = odd[q][2] > 1 ? 3 : 2, n = dim == 3 ? 64 : 256;
+        const double sigma[] = {16, 1e4, INFINITY};
+        solve_case even = box(dim, n, n, dim == 3 ? n : 1, v ? "ooo" : "iii");
+        even.sigma = sigma[s];
+        even.side = SIDE_MIXED;
+        solve_case c = even;
+        memcpy(c.n, odd[q], sizeof c.n);
+        const int count = iterations(&c), least = iterations(&even);
+        if (count > least + 1)
+          fail_msg("%d x %d x %d, walls %s, sigma %g: %d cycles, %d of %d cells a side", c.n[0], c.n[1],
+                   c.n[2], c.walls, c.sigma, count, least, n);
+      }
+}
+
 static void large_boxes_take_few_iterations(void **state) {
   (void)state;
   worst cube = {.what = "96^3"}, brick = {.what = "100 x 60 x 36"}, sheet = {.what = "512^2"};
@@ -202,6 +223,7 @@ int main(void) {
       cmocka_unit_test(smooth_coefficients_cost_nothing),
       cmocka_unit_test(jumps_of_ten_cost_little),
       cmocka_unit_test(counts_do_not_grow_with_the_box),
+      cmocka_unit_test(odd_extents_cost_a_cycle_at_most),
       cmocka_unit_test(large_boxes_take_few_iterations),
       cmocka_unit_test(held_cells_cost_nothing),
       cmocka_unit_test(any_number_of_levels_does),
