@@ -11,14 +11,21 @@
 
 /* --- the plane ------------------------------------------------------------------------------------------------ */
 
-static double value_at(const cf_plane *p, const cf_box *b, const cf_real *f, const int i, const int j,
-                       const int from, const int to) {
+/* Of cells [from, to) looked along. `solid`: of two that a slice lies between, one in a body does not count beside one that is not. */
+static double value_at(const cf_plane *p, const cf_box *b, const cf_real *f, const cf_real *solid,
+                       const int i, const int j, const int from, const int to) {
   ptrdiff_t at = i * b->stride[p->axis[0]] + j * b->stride[p->axis[1]];
-  double sum = 0;
+  double sum = 0, outside = 0;
+  int count = 0;
   if (p->along < 0) return (double)f[at];
   at += from * b->stride[p->along];
-  for (int k = from; k < to; ++k, at += b->stride[p->along]) sum += (double)f[at];
-  return sum / (to - from);
+  for (int k = from; k < to; ++k, at += b->stride[p->along]) {
+    sum += (double)f[at];
+    if (solid == NULL || (double)solid[at] > 0.5) continue;
+    outside += (double)f[at];
+    ++count;
+  }
+  return count > 0 ? outside / count : sum / (to - from);
 }
 
 /* Values in bodies become means of those around them, a few cells deep, so that what is smooth stays so at the edge. */
@@ -62,15 +69,16 @@ cf_status cf_plane_create(cf_plane *p, const cf_grid *g, const cf_real *f, const
     to = how->view == CF_VIEW_MEAN ? b->n[along] : b->n[along] / 2 + 1;
     p->middle = g->origin[along] + g->h * b->n[along] / 2;
   }
+  const cf_real *bodies = how->view == CF_VIEW_MEAN ? NULL : how->solid;
   CF_TRY(CF_NEW(&p->at, (size_t)p->n[0] * (size_t)p->n[1]));
   for (int j = 0; j < p->n[1]; ++j)
     for (int i = 0; i < p->n[0]; ++i)
-      p->at[(size_t)j * (size_t)p->n[0] + (size_t)i] = value_at(p, b, f, i, j, from, to);
+      p->at[(size_t)j * (size_t)p->n[0] + (size_t)i] = value_at(p, b, f, bodies, i, j, from, to);
   if (how->solid == NULL) return CF_OK;
   cf_status s = CF_NEW(&p->solid, (size_t)p->n[0] * (size_t)p->n[1]);
   for (int j = 0; s == CF_OK && j < p->n[1]; ++j)
     for (int i = 0; i < p->n[0]; ++i)
-      p->solid[(size_t)j * (size_t)p->n[0] + (size_t)i] = value_at(p, b, how->solid, i, j, from, to);
+      p->solid[(size_t)j * (size_t)p->n[0] + (size_t)i] = value_at(p, b, how->solid, NULL, i, j, from, to);
   if (s == CF_OK) s = continue_values(p);
   if (s != CF_OK) cf_plane_destroy(p);
   return s;

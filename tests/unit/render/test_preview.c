@@ -133,6 +133,27 @@ static void slices_and_means_of_three_dimensions(void **state) {
   drop(&o);
 }
 
+/* A slice between a cell of a body, which holds 0, and one beside it that holds 5. */
+static void a_slice_takes_nothing_from_bodies(void **state) {
+  (void)state;
+  one_field o = make(3, 4, 4, 4), body = make(3, 4, 4, 4);
+  const cf_box *b = &o.grid.box;
+  for (int k = 0; k < 4; ++k)
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i) {
+        body.f.at[cf_box_at(b, i, j, k)] = (cf_real)(k == 2 && i > 1 ? 0.9 : 0);
+        o.f.at[cf_box_at(b, i, j, k)] = (cf_real)(k == 2 && i > 1 ? 0 : 5);
+      }
+  cf_preview p = cf_preview_default("T", "");
+  cf_plane plane;
+  p.solid = body.f.at;
+  assert_int_equal(cf_plane_create(&plane, &o.grid, o.f.at, &p), CF_OK);
+  for (int i = 0; i < 16; ++i) assert_true(plane.at[i] == 5);
+  cf_plane_destroy(&plane);
+  drop(&o);
+  drop(&body);
+}
+
 /* Cell (0, 0) is at the lower left. */
 static void resampling_keeps_places_and_bounds(void **state) {
   const cf_preview p = cf_preview_default("phi", "");
@@ -297,6 +318,7 @@ int main(void) {
       cmocka_unit_test(a_few_hot_cells_do_not_set_the_range),
       cmocka_unit_test(given_range_and_map_are_kept),
       cmocka_unit_test(slices_and_means_of_three_dimensions),
+      cmocka_unit_test(a_slice_takes_nothing_from_bodies),
       cmocka_unit_test(resampling_keeps_places_and_bounds),
       cmocka_unit_test(same_field_same_picture_and_sides_are_even),
       cmocka_unit_test(a_line_is_drawn_where_it_belongs),
