@@ -130,8 +130,9 @@ static void add_time(cf_check *c) {
   const double frames = time->frames > 0 ? ceil(time->end * time->frames * (1 - 1e-9)) : 1;
   const double interval = time->frames > 0 ? fmin(1 / time->frames, time->end) : time->end;
   const double in_frame = ceil(interval / c->dt * (1 - 1e-9));
+  const double in_last = ceil((time->end - (frames - 1) * interval) / c->dt * (1 - 1e-9));
   snprintf(text, sizeof text, "0 to %.4g s in steps of %s%.4g s: about %.0f steps", time->end,
-           automatic ? "(auto) " : "", c->dt, frames * in_frame);
+           automatic ? "(auto) " : "", c->dt, (frames - 1) * in_frame + in_last);
   add(c, "time", text);
   snprintf(text, sizeof text, "0 to %.0f, one every %.4g s", frames, interval);
   add(c, "frames", text);
