@@ -45,6 +45,7 @@ static void release(cf_varied *v) {
   v->levels = 0;
   v->loose_stamp = 0;
   cf_band_destroy(&v->band);
+  cf_clusters_clear(&v->clusters);
   cf_cell_destroy(&v->own_alpha, b);
   cf_face_destroy(&v->own_beta, b);
   cf_cell_destroy(&v->r, b);
@@ -278,6 +279,7 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
                       v->tiles == c->region->tiles && v->alpha_number == c->alpha &&
                       v->beta_number == c->beta;
   v->stamp = 0;
+  v->knows_clusters = v->clustered = false;
   if (c->region != NULL)
     for (int a = 0; a < 3; ++a)
       if (c->region->grid.box.n[a] != A->grid.box.n[a] ||
@@ -373,8 +375,23 @@ static void careful_cycle(const cf_varied *v, const int at) {
   cf_coupled_smooth_back(l, 1, v->band_sweeps);
 }
 
+/* Sweeps on the finest level cost little beside what is below. */
+static void clustered_cycle(const cf_varied *v) {
+  const cf_coupled *l = &v->level[0];
+  const cf_band_sweeps none = {0, 1};
+  cf_coupled_smooth_first(l, 1, none, false);
+  cf_coupled_smooth_again(l, 1);
+  cf_clusters_correct(&v->clusters, l);
+  cf_coupled_smooth_back(l, 1, none);
+  cf_coupled_smooth_back(l, 1, none);
+}
+
 void cf_varied_cycle(const cf_varied *v, const int at) {
   const cf_coupled *l = &v->level[at], *coarse = l + 1;
+  if (v->clustered) {
+    clustered_cycle(v);
+    return;
+  }
   if (v->careful) {
     careful_cycle(v, at);
     return;

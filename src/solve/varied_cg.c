@@ -166,6 +166,19 @@ static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o,
   return *done ? cf_varied_judge(v, &s, o, report) : CF_OK;
 }
 
+/* Whether the cycle goes by clusters; makes them where nobody has yet. Only fields have couplings that are far from alike. */
+static cf_status choose_clusters(cf_varied *v) {
+  if (!v->knows_clusters) {
+    bool made = false;
+    cf_clusters_clear(&v->clusters);
+    if (v->stamp == 0 && v->depth > 1 && cf_clusters_are_called_for(&v->level[0]))
+      CF_TRY(cf_clusters_make(&v->clusters, &v->level[0], &made));
+    v->knows_clusters = true;
+  }
+  v->clustered = v->clusters.levels > 0;
+  return CF_OK;
+}
+
 /* By conjugate gradients, from where x is. */
 static cf_status gradients(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                            cf_solve_report *report) {
@@ -175,7 +188,9 @@ static cf_status gradients(cf_varied *v, const cf_cell b, const cf_solve_options
     cf_varied_clear(v, x);
     return CF_OK;
   }
-  v->careful = v->thorough = false;
+  CF_TRY(choose_clusters(v));
+  v->careful = v->clustered; /* both cycles are symmetric */
+  v->thorough = false;
   v->band_sweeps = (cf_band_sweeps){BAND_SWEEPS, 1}; /* over-relaxed ones do harm in necks of a cell */
   approach(v, b, o->tolerance * o->tolerance * s.second, o->max_iterations, x, &s, &report->iterations);
   return cf_varied_judge(v, &s, o, report);
@@ -204,6 +219,7 @@ cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options 
     cf_pockets_restore_means(&v->loose, l, x);
   }
   report->pockets = v->pockets.count;
+  v->clustered = false;
   bool done = false;
   if (cf_varied_can_cycle(v)) CF_TRY(cycle(v, b, o, x, report, &done));
   return done ? CF_OK : go_on(v, b, o, x, report);
