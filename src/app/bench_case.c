@@ -207,6 +207,7 @@ static cf_status time_solves(const cf_bench_system *s, const cf_bench_case *c, c
     sum += seconds[result->times++];
   }
   result->seconds = cf_bench_median(seconds, result->times);
+  result->cells = s->cells;
   result->residual = cf_helmholtz_residual(s->A, s->x, s->b);
   return CF_OK;
 }
@@ -221,10 +222,9 @@ cf_status cf_bench_case_run(const cf_bench_case *c, const int least, const doubl
   return status;
 }
 
-double cf_bench_least_bytes(const cf_bench_case *c, const cf_solve_report *report) {
-  const double cells = (double)c->n[0] * c->n[1] * (c->dim == 3 ? c->n[2] : 1);
+double cf_bench_least_bytes(const cf_bench_result *result) {
   const double x = sizeof(cf_real), r = sizeof(float);
-  return cells * (2 * x + r + report->iterations * 2 * (x + r));
+  return (double)result->cells * (2 * x + r + result->report.iterations * 2 * (x + r));
 }
 
 /* --- the memory ------------------------------------------------------------------------------------------- */

@@ -43,8 +43,9 @@ typedef struct cf_bench_system {
 } cf_bench_system;
 
 typedef struct cf_bench_result {
-  double seconds; /* median of one solve from x = 0, without set-up */
-  int times;      /* that it was solved */
+  double seconds;  /* median of one solve from x = 0, without set-up */
+  int times;       /* that it was solved */
+  ptrdiff_t cells; /* that have an equation */
   cf_solve_report report;
   double residual;       /* |b - A x| / |b|, computed afresh */
   double bytes_per_cell; /* of x and all that the solver touched; b is not counted */
@@ -65,8 +66,8 @@ cf_status cf_bench_system_solve(const cf_bench_system *s, const cf_bench_case *c
 cf_status cf_bench_case_run(const cf_bench_case *c, int least, double seconds, cf_bench_result *result);
 
 /* Bytes that even a perfect cache must move a solve: what starts it (b and x read, r written) and, an iteration, x
- * and r read and written. */
-double cf_bench_least_bytes(const cf_bench_case *c, const cf_solve_report *report);
+ * and r read and written. Coefficients that are fields are not counted. */
+double cf_bench_least_bytes(const cf_bench_result *result);
 
 /* Bytes a second of a triad, a = b + s c, far out of the caches: the best of some tries, three streams
  * counted. CF_NO_MEMORY. */

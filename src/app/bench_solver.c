@@ -3,7 +3,8 @@
  * cattaneo bench solver: a row a linear system.
  *
  * The default set goes through extents and sigma with the settings of the solver as they are, and then varies one
- * thing at a time: tolerance, right side, walls, extents that are no powers of two, two dimensions, threads.
+ * thing at a time: tolerance, right side, walls, extents that are no powers of two, two dimensions, threads, obstacles
+ * (bench_region.h), coefficients that are fields. A cell is one that has an equation.
  */
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +23,8 @@ typedef struct group {
   double sigma[LIST + 1], tolerance;
   const char *walls;
   cf_bench_side side;
-  bool one_thread;
+  bool one_thread, varied;
+  const char *region; /* NULL: the whole box */
 } group;
 
 static const group default_set[] = {
@@ -38,6 +40,11 @@ static const group default_set[] = {
     {.name = "walls", .n = {{256, 256, 256}}, .sigma = {0.25, 16, POISSON}, .walls = "ppp"},
     {.name = "walls", .n = {{256, 256, 256}}, .sigma = {0.25, 16, POISSON}, .walls = "pio"},
     {.name = "square", .n = {{256, 256, 1}, {1024, 1024, 1}, {4096, 4096, 1}}, .sigma = {0.25, 16, POISSON}},
+    {.name = "ball", .n = {{128, 128, 128}}, .sigma = {16, POISSON}, .region = "ball"},
+    {.name = "slalom", .n = {{128, 128, 128}}, .sigma = {16, POISSON}, .region = "slalom"},
+    {.name = "porous", .n = {{128, 128, 128}}, .sigma = {16, POISSON}, .region = "porous"},
+    {.name = "drop", .n = {{256, 256, 256}}, .sigma = {16, POISSON}, .region = "drop"},
+    {.name = "fields", .n = {{128, 128, 128}}, .sigma = {1, 16, POISSON}, .varied = true},
 };
 enum { GROUPS = sizeof default_set / sizeof *default_set };
 
@@ -56,7 +63,7 @@ static double stream_of(const page *p, const int threads) {
 static void print_json(const cf_bench_case *c, const cf_bench_result *r, const double share) {
   printf("{\"bench\": \"solver\", \"case\": \"%s\", \"n\": [%d, %d", c->name, c->n[0], c->n[1]);
   if (c->dim == 3) printf(", %d", c->n[2]);
-  printf("]");
+  printf("], \"cells\": %td", r->cells);
   cf_bench_json_number("sigma", c->sigma);
   cf_bench_json_number("tolerance", c->tolerance);
   printf(", \"threads\": %d, \"walls\": \"%s\", \"side\": \"%s\", \"method\": \"%s\"", c->threads, c->walls,
@@ -79,20 +86,19 @@ static void print_head(const page *p) {
 }
 
 static void print_row(const cf_bench_case *c, const cf_bench_result *r, const double share) {
-  const double cells = (double)c->n[0] * c->n[1] * c->n[2];
   char extents[48], sigma[24] = "Poisson";
   snprintf(extents, sizeof extents, c->dim == 3 ? "%dx%dx%d" : "%dx%d", c->n[0], c->n[1], c->n[2]);
   if (isfinite(c->sigma)) snprintf(sigma, sizeof sigma, "%g", c->sigma);
   printf("%-7s%-15s%-5s%-8s%8s%7.0e%4d%10.3f%9.3f%8d%10.2e%7.1f%7.1f%%  %s\n", c->name, extents, c->walls,
          cf_bench_side_name[c->side], sigma, c->tolerance, c->threads, 1e3 * r->seconds,
-         1e9 * r->seconds / cells, r->report.iterations, r->residual, r->bytes_per_cell, 100 * share,
-         r->report.method);
+         1e9 * r->seconds / (double)r->cells, r->report.iterations, r->residual, r->bytes_per_cell,
+         100 * share, r->report.method);
 }
 
 static cf_status bench_row(const page *p, const cf_bench_case *c) {
   cf_bench_result r;
   CF_TRY(cf_bench_case_run(c, TIMES_LEAST, 0.5, &r));
-  const double share = cf_bench_least_bytes(c, &r.report) / r.seconds / stream_of(p, c->threads);
+  const double share = cf_bench_least_bytes(&r) / r.seconds / stream_of(p, c->threads);
   (p->json ? print_json : print_row)(c, &r, share);
   fflush(stdout);
   return CF_OK;
@@ -110,7 +116,9 @@ static cf_status bench_extents(const page *p, const group *g, const int n[3], co
                      .walls = g->walls != NULL ? g->walls
                               : dim == 3       ? "iii"
                                                : "ii",
-                     .side = g->side};
+                     .side = g->side,
+                     .region = g->region,
+                     .varied = g->varied};
   const double *sigma = f->sigmas > 0 ? f->sigma : g->sigma;
   for (int s = 0; f->sigmas > 0 ? s < f->sigmas : s < LIST && sigma[s] > 0; ++s) {
     c.sigma = sigma[s];
