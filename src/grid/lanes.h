@@ -16,8 +16,11 @@ typedef double cf_eight __attribute__((vector_size(64)));
 typedef float cf_sixteen __attribute__((vector_size(64)));
 typedef int64_t cf_eight_bits __attribute__((vector_size(64))); /* what a comparison of cf_eight gives */
 
+typedef float cf_eight_in_floats __attribute__((vector_size(32)));
+
 /* The same in memory, anywhere. */
 typedef double cf_eight_doubles __attribute__((vector_size(64), aligned(8), may_alias));
+typedef float cf_four_floats __attribute__((vector_size(16), aligned(4), may_alias));
 typedef float cf_eight_floats __attribute__((vector_size(32), aligned(4), may_alias));
 typedef float cf_sixteen_floats __attribute__((vector_size(64), aligned(4), may_alias));
 

@@ -35,26 +35,23 @@ cf_status cf_box_solver_create_around(cf_box_solver **f, const cf_helmholtz *A, 
   return CF_OK;
 }
 
-/* The weights of interpolation, and which cells take part in the usual way. */
+/* The weights of interpolation at edges, where all cells take part in the usual way at first. */
 static void take_transfers(const cf_box_solver *f) {
   const cf_coupled *l = &f->varied->level[0];
   const cf_split *s = &f->level[0];
   const cf_segments *g = &f->segments;
 #pragma omp parallel for schedule(static) num_threads(s->threads)
   for (int k = g->low[2]; k < g->high[2]; ++k)
-    for (int j = g->low[1]; j < g->high[1]; ++j) {
-      const ptrdiff_t row = cf_segments_row(s, j, k), first = cf_box_at(&l->box, 0, j, k);
-      for (ptrdiff_t v = g->first[row]; v < g->first[row + 1]; ++v) {
-        const cf_segment *q = &g->segment[v];
-        if (q->table < 0) continue;
-        for (int i = q->low; i < q->high; ++i) {
-          const ptrdiff_t entry = cf_segment_entry(q, i & 1, i / 2);
-          if (!(g->faces[entry] & CF_FACES_INSIDE)) continue;
-          g->faces[entry] |= CF_FACES_TRANSFER;
-          for (int a = 0; a < l->dim; ++a) g->weight[a][entry] = l->weight[a][first + i];
+    for (int j = g->low[1]; j < g->high[1]; ++j) CF_FOR_ROW_SEGMENTS(g, &g->edges, s, j, k, q) {
+        cf_segment_table *t = &g->table[q->table];
+        const ptrdiff_t p = cf_box_at(&l->box, cf_segment_cell(s, q, j, k), j, k);
+        for (int i = t->low; i < t->high; ++i) {
+          const int lane = cf_lane_of(i);
+          if (!(t->faces[lane] & CF_FACES_INSIDE)) continue;
+          t->faces[lane] |= CF_FACES_TRANSFER;
+          for (int a = 0; a < l->dim; ++a) t->weight[a][lane] = l->weight[a][p + i];
         }
       }
-    }
 }
 
 /* Where cell p of the box is on the split level. */
@@ -67,19 +64,14 @@ static ptrdiff_t split_place(const cf_split *s, ptrdiff_t p, int at[3]) {
   return at[1] * s->row + at[2] * s->plane + cf_split_at(s, at[0]);
 }
 
-/* The entry of a cell that has one: cells with another parent are at an edge. */
-static ptrdiff_t entry_of(const cf_box_solver *f, const int at[3]) {
-  const cf_segment *q = cf_segments_at(&f->segments, &f->level[0], at[1], at[2], at[0] / 2);
-  return q != NULL && q->table >= 0 ? cf_segment_entry(q, at[0] & 1, at[0] / 2) : -1;
-}
-
+/* Their tables are their own: where cells have another parent than others of their block, something is closed. */
 static void mark_odds(const cf_box_solver *f) {
   const cf_coupled *l = &f->varied->level[0];
   for (ptrdiff_t v = 0; v < l->odds; ++v) {
     int at[3];
     split_place(&f->level[0], l->odd_cell[v], at);
-    const ptrdiff_t entry = entry_of(f, at);
-    f->segments.faces[entry] &= (unsigned char)~CF_FACES_TRANSFER;
+    cf_segments_table_at(&f->segments, &f->level[0], at)->faces[cf_lane_of(at[0])] &=
+        (unsigned char)~CF_FACES_TRANSFER;
   }
 }
 
@@ -124,17 +116,20 @@ cf_status cf_box_solver_set_around(cf_box_solver *f, const cf_helmholtz *A, cons
 double cf_box_sample_around(const cf_box_solver *f, const cf_cell b, const cf_cell x) {
   const cf_split *s = &f->level[0];
   const cf_segments *g = &f->segments;
-  const unsigned char *kind = f->varied->region->kind;
-  const ptrdiff_t rows = (ptrdiff_t)s->n[1] * s->n[2], step = CF_MAX(g->rows / 61, 1);
+  const ptrdiff_t step = CF_MAX(g->rows / 61, 1);
   double largest = 0;
-  for (ptrdiff_t row = 0; row < rows; ++row) {
-    if (g->first[row] == g->first[row + 1] || g->number[row] % step != 0) continue;
-    for (int i = g->segment[g->first[row]].low; i < g->segment[g->first[row + 1] - 1].high; ++i) {
-      const ptrdiff_t p = cf_box_row(&s->plain->box, row) + i;
-      if (kind[p] != CF_CELL_INSIDE) continue;
-      largest = CF_MAX(largest, CF_MAX(fabs((double)b.at[p]), f->scale * fabs((double)x.at[p])));
+  for (int k = g->low[2]; k < g->high[2]; ++k)
+    for (int j = g->low[1]; j < g->high[1]; ++j) {
+      if (g->number[cf_segments_row(s, j, k)] % step != 0) continue;
+      CF_FOR_ROW_SEGMENTS(g, &g->all, s, j, k, q) {
+        const cf_segment_table *t = &g->table[q->table];
+        const ptrdiff_t p = cf_box_at(&s->plain->box, cf_segment_cell(s, q, j, k), j, k);
+        for (int i = t->low; i < t->high; ++i)
+          if (t->faces[cf_lane_of(i)] & CF_FACES_INSIDE)
+            largest =
+                CF_MAX(largest, CF_MAX(fabs((double)b.at[p + i]), f->scale * fabs((double)x.at[p + i])));
+      }
     }
-  }
   return largest;
 }
 
@@ -144,10 +139,11 @@ double cf_box_sample_around(const cf_box_solver *f, const cf_cell b, const cf_ce
 static float rest_of(const cf_box_solver *f, const ptrdiff_t p) {
   const cf_split *s = &f->level[0];
   int at[3];
-  const ptrdiff_t here = split_place(s, p, at), entry = entry_of(f, at);
-  const int faces = f->segments.faces[entry];
+  const ptrdiff_t here = split_place(s, p, at);
+  const cf_segment_table *t = cf_segments_table_at(&f->segments, s, at);
+  const int lane = cf_lane_of(at[0]), faces = t->faces[lane];
   const float c = s->e[here];
-  float sum = (float)(f->segments.held[entry] & CF_HELD_MASK) * c;
+  float sum = (float)(t->held[lane] & CF_HELD_MASK) * c;
   for (int a = 0; a < s->dim; ++a)
     for (int side = 0; side < 2; ++side) {
       if (!(faces >> (2 * a + side) & 1)) continue;

@@ -75,6 +75,7 @@ void cf_coupled_destroy(cf_coupled *l) {
   cf_free(l->all_rows);
   cf_free(l->row_at);
   cf_free(l->band);
+  cf_free(l->span);
   cf_free(l->odd_cell);
   cf_free(l->odd_block);
   cf_free(l->odd_parent);

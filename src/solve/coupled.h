@@ -60,6 +60,7 @@ typedef struct cf_coupled {
   cf_run all[1];
   int32_t *row_at;     /* with tiles: which entry of `row` a row of tiles is, -1: none */
   int low[3], high[3]; /* cells that are visited lie within */
+  cf_run *span; /* of rows in twos along both axes (spans.c): what is visited of them; NULL: all of it */
 
   float *e, *r, *rest;          /* correction, right side, residual */
   float *inverse, *free, *held; /* 1/diagonal (0: no equation) and its parts */
@@ -156,6 +157,27 @@ static inline const cf_tile_row *cf_coupled_row_at(const cf_coupled *l, const in
   const cf_tiles *t = l->tiles;
   const int32_t v = l->row_at[(k >> t->shift[2]) * (ptrdiff_t)t->n[1] + (j >> t->shift[1])];
   return v >= 0 ? &l->row[v] : NULL;
+}
+
+/* Dense levels: of every row as much as has equations, in whole vectors. What is visited no more is 0 from now on in e and rest.
+ * CF_NO_MEMORY. */
+cf_status cf_coupled_find_spans(cf_coupled *l);
+
+static inline const cf_run *cf_coupled_span(const cf_coupled *l, const int j, const int k) {
+  return &l->span[(ptrdiff_t)(k >> 1) * ((l->box.n[1] + 1) / 2) + (j >> 1)];
+}
+
+/* Runs [*run, *end) that are visited of row (j, k). */
+static inline void cf_coupled_runs(const cf_coupled *l, const int j, const int k, const cf_run **run,
+                                   const cf_run **end) {
+  if (l->span != NULL) {
+    *run = cf_coupled_span(l, j, k);
+    *end = *run + ((*run)->low < (*run)->high);
+    return;
+  }
+  const cf_tile_row *row = cf_coupled_row_at(l, j, k);
+  *run = row != NULL ? l->run + row->run : NULL;
+  *end = row != NULL ? l->run + row->run_end : NULL;
 }
 
 /* The rows of a part w of level l. */

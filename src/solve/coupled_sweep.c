@@ -71,7 +71,8 @@ CF_KERNEL void first_row(const int dim, const int n, const view *v, const place 
   const float *r = v->r + at.p, *inverse = v->inverse + at.p;
   const float omega = v->omega;
   CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) e[i] = ((i ^ at.parity) & 1) == 0 ? omega * (inverse[i] * r[i]) : 0;
+  for (int i = 0; i < n; ++i)
+    e[i] = ((i ^ at.parity) & 1) == 0 && inverse[i] > 0 ? omega * (inverse[i] * r[i]) : 0;
 }
 
 /* Neighbours have the other colour, so rows may run in any order and the loop in vectors; both colours are computed and
@@ -188,9 +189,9 @@ static void run_rows_to(const pass *s, const int number, int j, const int j_end,
   view w = view_of(l, s->stage[number].omega);
   if (kind == CF_STAGE_NONE) return;
   for (; j < CF_MIN(j_end, end[1]); ++j) {
-    const cf_tile_row *row = cf_coupled_row_at(l, j, k);
-    if (row == NULL || (kind == CF_STAGE_BAND && !l->band[j + (ptrdiff_t)l->box.n[1] * k])) continue;
-    for (const cf_run *run = l->run + row->run; run < l->run + row->run_end; ++run) {
+    const cf_run *run, *run_end;
+    if (kind == CF_STAGE_BAND && !l->band[j + (ptrdiff_t)l->box.n[1] * k]) continue;
+    for (cf_coupled_runs(l, j, k, &run, &run_end); run < run_end; ++run) {
       if (kind == CF_STAGE_OWN) {
         s->own(s->of, run, j, k);
         continue;

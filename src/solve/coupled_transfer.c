@@ -42,8 +42,9 @@ void cf_coupled_restrict(const cf_coupled *l, const cf_coupled *coarse) {
   set_odds_apart(l);
   const int x = l->coarsened[0], y = l->coarsened[1], z = l->coarsened[2];
   CF_PARALLEL_COUPLED (coarse, v)
-    CF_TILE_ROWS (coarse, v, j, k)
-      CF_TILE_RUNS (coarse, v, run) {
+    CF_TILE_ROWS (coarse, v, j, k) {
+      const cf_run *run, *end;
+      for (cf_coupled_runs(coarse, j, k, &run, &end); run < end; ++run) {
         const float *fine[4];
         int rows = 0;
         for (int kk = 0; kk <= z; ++kk)
@@ -52,6 +53,7 @@ void cf_coupled_restrict(const cf_coupled *l, const cf_coupled *coarse) {
         float *out = coarse->r + cf_box_at(&coarse->box, run->low, j, k);
         (x ? gather_pairs : gather_single)(run->high - run->low, rows, fine, out);
       }
+    }
   add_odds(l, coarse);
 }
 
@@ -161,8 +163,10 @@ static void prolong(const cf_coupled *coarse, const cf_coupled *l,
   cf_coupled_wrap(coarse, coarse->e);
   correct_odds(coarse, l);
   CF_PARALLEL_COUPLED (l, v)
-    CF_TILE_ROWS (l, v, j, k)
-      CF_TILE_RUNS (l, v, run) by(coarse, l, run, j, k);
+    CF_TILE_ROWS (l, v, j, k) {
+      const cf_run *run, *end;
+      for (cf_coupled_runs(l, j, k, &run, &end); run < end; ++run) by(coarse, l, run, j, k);
+    }
   for (ptrdiff_t v = 0; v < l->odds; ++v) l->e[l->odd_cell[v]] = l->odd_value[v];
 }
 

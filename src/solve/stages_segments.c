@@ -1,230 +1,200 @@
 /* SPDX-License-Identifier: MIT
  *
- * The stages on a level that has segments (segments.h): each for all segments of its rows that lie within the strip. The
+ * The stages on a level that has segments (segments.h): each for all of them in its rows that lie within the strip. The
  * next coarser level is one of couplings (coupled.h), whose transfers these are: the residual summed over the children of
  * a coarse cell, and
  *
  *     e += e_c + sum over axes of w_a (e_{c+a} - e_c)
  *
- * with w_a from a table on edge segments; on plain ones, around which all coarse cells are inside, it is linear along each axis in
- * turn, (3 e_c + e_{c+a})/4, as in the whole box: smooth corrections leave a twentieth of what the sum above leaves there.
+ * with w_a from a table; where all coarse cells around are inside it is linear along each axis in turn, (3 e_c + e_{c+a})/4, as in
+ * the whole box: smooth corrections leave a twentieth of what the sum above leaves there.
  */
-#include <stdint.h>
 #include <string.h>
 
 #include "solve/coupled.h"
-#include "solve/stages_edge.h"
-#include "solve/stages_pieces.h"
-
-CF_KERNEL cf_half half_of(const int dim, const cf_split *s, const cf_piece *q, const int colour) {
-  cf_half h = cf_half_of(dim, s, q->strip.j, q->strip.k, colour);
-  if (q->edge) {
-    const ptrdiff_t entry = cf_segment_entry(q->segment, h.parity, 0);
-    h.inverse = s->segments->inverse + entry;
-    h.faces = s->segments->faces + entry;
-    h.held = s->segments->held + entry;
-  }
-  return h;
-}
-
-/* Images are for plain segments: on the others a face knows whether it is one. */
-CF_KERNEL void set_images(const cf_split *s, const cf_piece *q, const cf_half *h, const float factor) {
-  if (!q->edge) cf_half_set_images(s, &q->strip, h, factor);
-}
+#include "solve/stages_vectors.h"
 
 /* --- half sweeps -------------------------------------------------------------------------------------- */
 
-CF_KERNEL void first(const int dim, const cf_split *s, const cf_strip *t, const float omega) {
-  cf_piece q;
-  CF_FOR_ROWS(j, t)
-  CF_FOR_PIECES(s, t, j, q) {
-    const cf_half red = half_of(dim, s, &q, 0);
-    cf_first_half(s, &red, &q.strip, omega);
-  }
-}
+/* FRESH: the half counts as 0. FIRST: so does the other one. */
+enum { AGAIN, FRESH, FIRST };
 
-/* FRESH: the half counts as 0, and so do the images of the other half's cells behind the walls. EDGES: on edge segments alone. */
-enum { ALL, FRESH, EDGES };
-
-CF_KERNEL void relax(const int dim, const int way, const cf_split *s, const cf_strip *t, const int colour,
-                     const float omega) {
+CF_KERNEL void relax(const int dim, const int way, const cf_split *s, const cf_segment_list *list,
+                     const cf_strip *t, const int colour, const float omega) {
+  const cf_ground g = cf_ground_of(dim, s);
   const float keep = 1 - omega;
-  cf_piece q;
-  CF_FOR_ROWS(j, t)
-  CF_FOR_PIECES(s, t, j, q) {
-    if (way == EDGES && !q.edge) continue;
-    const cf_half h = half_of(dim, s, &q, colour);
-    if (way == FRESH) {
-      const cf_half other = half_of(dim, s, &q, 1 - colour);
-      set_images(s, &q, &other, 0);
+  CF_FOR_SEGMENTS(list, s, t, q) {
+    const cf_sixteen_cells h = cf_cells_of(&g, q, colour);
+    cf_sixteen sum = CF_SIXTEEN_OF(h.r), around;
+    if (way != FIRST) {
+      cf_sixteen_around(dim, &h, &around);
+      sum += h.coupling * around;
     }
-    CF_FOR_PIECE(m, &q.strip) {
-      const float e = omega * h.inverse[m] * (h.r[m] + cf_around(dim, 1, &h, m));
-      h.e[m] = way == FRESH ? e : keep * h.e[m] + e;
-    }
+    const cf_sixteen e = omega * CF_SIXTEEN_OF(h.table->inverse + h.lane) * sum, old = CF_SIXTEEN_OF(h.e);
+    CF_INTO_SIXTEEN(h.e, way == AGAIN ? keep * old + e : e);
   }
 }
 
 /* --- residual and solution ---------------------------------------------------------------------------- */
 
+/* A black half sweep, and what the change of e, as stored, leaves of the residual where p->step of the correction is taken. */
 CF_KERNEL void last(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
   const cf_split *s = p->at;
+  const cf_ground g = cf_ground_of(dim, s);
   const float step = (float)p->step;
-  float *before = t->scratch;
-  cf_piece q;
   CF_FOR_ROWS(j, t) {
-    double products = 0;
-    int any = 0;
-    CF_FOR_PIECES(s, t, j, q) {
-      const cf_half red = half_of(dim, s, &q, 0), black = half_of(dim, s, &q, 1);
-      const int from = q.strip.from, n = q.strip.to - from;
-      any = 1;
-      if (q.edge) {
-        products += cf_last_edge(dim, &black, &q.strip, omega, step);
-        cf_clear_pad(s, &q.strip, &black);
-        continue;
-      }
-      memcpy(before, black.r + from, (size_t)n * sizeof *before);
-      cf_half_set_images(s, &q.strip, &black, 1);
-      if (cf_half_is_inner(dim, &black))
-        cf_last_half(dim, 1, &black, &q.strip, omega, step);
-      else
-        cf_last_half(dim, 0, &black, &q.strip, omega, step);
-      cf_clear_pad(s, &q.strip, &black);
-      cf_half_set_images(s, &q.strip, &red, 1);
-      products += cf_products(n, before, black.r + from);
+    cf_sixteen products = {0};
+    if (!cf_has_segments(s, t, j)) continue;
+    CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, t->k, q) {
+      const cf_sixteen_cells h = cf_cells_of(&g, q, 1);
+      cf_sixteen applied, diagonal;
+      cf_sixteen_applied(dim, &h, &applied);
+      cf_sixteen_diagonal(dim, &h, &diagonal);
+      const cf_sixteen r = CF_SIXTEEN_OF(h.r), old = CF_SIXTEEN_OF(h.e), residual = r - applied;
+      const cf_sixteen fresh = old + omega * CF_SIXTEEN_OF(h.table->inverse + h.lane) * residual;
+      const cf_sixteen rest = residual - diagonal * (fresh - old);
+      const cf_sixteen taken = step == 1 ? rest : r + step * (rest - r);
+      products += r * taken;
+      CF_INTO_SIXTEEN(h.r, taken);
+      CF_INTO_SIXTEEN(h.e, fresh);
     }
-    if (any) cf_piece_sums(p, t, j)[CF_SUM_BLACK * p->sums] = products;
+    cf_segment_sums(p, t, j)[CF_SUM_BLACK * p->sums] = cf_sum_sixteen(&products);
   }
 }
 
-/* x += gain e on the cells of the piece from its first to its last inside. */
-CF_KERNEL void add(const cf_pass *p, const cf_piece *q, const float *even, const float *odd, float *line) {
-  const int from = 2 * q->strip.from, low = CF_MAX(from, q->segment->low);
-  const int high = CF_MIN(2 * q->strip.to, q->segment->high);
-  const double gain = p->gain;
-  cf_real *x = p->x + cf_box_at(&p->at->plain->box, low, q->strip.j, q->strip.k);
-  if (low == from && high - low == cf_natural_count(p->at, &q->strip)) {
-    cf_add_woven(high - low, gain, 0, even, odd, x);
+/* Eight cells of x += gain e. */
+CF_KERNEL void add_eight(const double gain, const float *even, const float *odd, cf_real *x) {
+  const cf_four_floats a = *(const cf_four_floats *)even, b = *(const cf_four_floats *)odd;
+  const cf_eight_in_floats e = __builtin_shufflevector(a, b, 0, 4, 1, 5, 2, 6, 3, 7);
+  CF_EIGHT_INTO(x, CF_EIGHT_OF(x) + gain * __builtin_convertvector(e, cf_eight));
+}
+
+/* x += gain e on the cells of a segment from the first inside to the last, in whole eights but at the end of a row: tiles have
+ * no less, and e is 0 where no cell is inside. x: at its first cell, e and odd: at its halves. count: cells that the row has
+ * from there on. */
+CF_KERNEL void add(const double gain, const cf_segment_table *t, const int count, const float *e,
+                   const float *odd, cf_real *x) {
+  if (t->low < CF_SUM_LANES && t->high > CF_SEGMENT_CELLS - CF_SUM_LANES && count >= CF_SEGMENT_CELLS) {
+    cf_add_woven(CF_SEGMENT_CELLS, gain, 0, e, odd, x);
     return;
   }
-  CF_ROW_LOOP
-  for (int m = 0; m < q->strip.to - q->strip.from; ++m) {
-    line[2 * m] = even[m];
-    line[2 * m + 1] = odd[m];
-  }
-  CF_ROW_LOOP
-  for (int i = 0; i < high - low; ++i) x[i] = (cf_real)((double)x[i] + gain * (double)line[low - from + i]);
+  int i = t->low / CF_SUM_LANES * CF_SUM_LANES;
+  for (; i < t->high && i + CF_SUM_LANES <= count; i += CF_SUM_LANES)
+    add_eight(gain, e + i / 2, odd + i / 2, x + i);
+  for (; i < t->high; ++i) x[i] = (cf_real)((double)x[i] + gain * (double)(i % 2 == 0 ? e : odd)[i / 2]);
 }
 
-/* x += lift where a cell is inside, and the sums of what comes of it. */
-CF_KERNEL void lift(const cf_pass *p, const cf_piece *q, const ptrdiff_t room, double *line, double *sum,
-                    double *squares) {
-  const unsigned char *faces = cf_piece_faces(p->at->segments, q, (unsigned char *)(line + room));
-  const int n = cf_natural_count(p->at, &q->strip);
-  const double by = p->lift;
-  cf_real *x = p->x + cf_box_at(&p->at->plain->box, 2 * q->strip.from, q->strip.j, q->strip.k);
-  if (by != 0) {
-    CF_ROW_LOOP
-    for (int i = 0; i < n; ++i)
-      x[i] = faces == NULL || faces[i] & CF_FACES_INSIDE ? (cf_real)((double)x[i] + by) : x[i];
+/* x += by where a cell of a segment is inside, and the sums of what comes of it, in lanes. */
+CF_KERNEL void lift(const cf_segment_table *t, const double by, const int count, cf_real *x, cf_eight *sum,
+                    cf_eight *squares) {
+  unsigned char faces[CF_SEGMENT_CELLS];
+  cf_weave(t->faces, faces);
+  int i = t->low / CF_SUM_LANES * CF_SUM_LANES;
+  for (; i < t->high && i + CF_SUM_LANES <= count; i += CF_SUM_LANES) {
+    const cf_eight_bits open = CF_EIGHT_OF_BYTES(faces + i);
+    const cf_eight all = CF_EIGHT_OF(x + i),
+                   lifted = all + CF_EIGHT_WHERE(open, CF_FACES_INSIDE, (cf_eight){0} + by);
+    CF_EIGHT_INTO(x + i, lifted);
+    const cf_eight kept = CF_EIGHT_OF(x + i), v = CF_EIGHT_WHERE(open, CF_FACES_INSIDE, kept + 0);
+    *sum += v;
+    *squares += v * v;
   }
-  if (p->sums_of_x) cf_add_inside(n, x, faces, sum, squares);
+  for (; i < t->high; ++i) {
+    if (!(faces[i] & CF_FACES_INSIDE)) continue;
+    x[i] = (cf_real)((double)x[i] + by);
+    (*sum)[i % CF_SUM_LANES] += (double)x[i];
+    (*squares)[i % CF_SUM_LANES] += (double)x[i] * (double)x[i];
+  }
+}
+
+/* A row of x and its e. */
+CF_KERNEL void update_x(const cf_pass *p, const cf_strip *t, const int j, cf_eight *sum, cf_eight *squares) {
+  const cf_split *s = p->at;
+  const ptrdiff_t row = j * s->row + t->k * s->plane;
+  const double gain = p->gain;
+  cf_real *x = p->x + cf_box_at(&s->plain->box, 0, j, t->k);
+  const bool lifts = p->sums_of_x || p->lift != 0;
+  cf_ahead ahead = cf_ahead_of(s, t, j);
+  CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, t->k, q) {
+    const cf_segment_table *table = &s->segments->table[q->table];
+    const float *e = s->e + cf_segment_at(q);
+    const ptrdiff_t i = 2 * (cf_segment_at(q) - row);
+    cf_fetch_cells(&ahead, p->x);
+    ++ahead.at;
+    add(gain, table, s->n[0] - (int)i, e, e + s->odd, x + i);
+    if (lifts) lift(table, p->lift, s->n[0] - (int)i, x + i, sum, squares);
+  }
+  for (; ahead.at < ahead.end; ++ahead.at) cf_fetch_cells(&ahead, p->x);
+}
+
+/* r -= step A' e on red cells, and the first half sweep of the next cycle; *squares: of r, of both colours. */
+CF_KERNEL void restart(const int dim, const cf_pass *p, const cf_strip *t, const int j, const float omega,
+                       double *squares, double *products) {
+  const cf_split *s = p->at;
+  const cf_ground g = cf_ground_of(dim, s);
+  const float step = (float)p->step;
+  cf_sixteen all = {0}, change = {0};
+  CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, t->k, q) {
+    const cf_sixteen_cells h = cf_cells_of(&g, q, 0), black = cf_cells_of(&g, q, 1);
+    cf_sixteen applied;
+    cf_sixteen_applied(dim, &h, &applied);
+    const cf_sixteen before = CF_SIXTEEN_OF(h.r), r = before - step * applied, other = CF_SIXTEEN_OF(black.r);
+    change += before * r;
+    all += r * r + other * other;
+    CF_INTO_SIXTEEN(h.r, r);
+    CF_INTO_SIXTEEN(h.e, omega * CF_SIXTEEN_OF(h.table->inverse + h.lane) * r);
+  }
+  *squares = cf_sum_sixteen(&all);
+  *products = cf_sum_sixteen(&change);
 }
 
 CF_KERNEL void update(const int dim, const cf_pass *p, const cf_strip *t, const float omega) {
-  const cf_split *s = p->at;
-  const float step = (float)p->step;
-  float *before = t->scratch;
-  cf_piece q;
   CF_FOR_ROWS(j, t) {
-    double squares = 0, products = 0, x = 0, xx = 0;
-    int any = 0;
-    CF_FOR_PIECES(s, t, j, q) {
-      const cf_half red = half_of(dim, s, &q, 0), black = half_of(dim, s, &q, 1);
-      const ptrdiff_t at = j * s->row + t->k * s->plane + q.strip.from;
-      if (t->next_k >= 0) cf_fetch_x(p, &q.strip, j);
-      add(p, &q, s->e + at, s->e + at + s->odd, t->scratch);
-      if (p->sums_of_x || p->lift != 0) lift(p, &q, 2 * s->width + CF_SPLIT_LANES, t->scratch, &x, &xx);
-      const int from = q.strip.from, n = q.strip.to - from;
-      if (q.edge) {
-        products += cf_restart_edge(dim, &red, &q.strip, omega, step);
-      } else {
-        memcpy(before, red.r + from, (size_t)n * sizeof *before);
-        cf_half_set_images(s, &q.strip, &black, 0);
-        if (cf_half_is_inner(dim, &red))
-          cf_restart_half(dim, 1, &red, &q.strip, omega, step);
-        else
-          cf_restart_half(dim, 0, &red, &q.strip, omega, step);
-        products += cf_products(n, before, red.r + from);
-      }
-      cf_clear_pad(s, &q.strip, &red);
-      squares += cf_squares(n, s->r + at, s->r + at + s->odd);
-      any = 1;
-    }
-    if (!any) continue;
-    double *sums = cf_piece_sums(p, t, j);
-    sums[CF_SUM_RESIDUAL * p->sums] = squares;
-    sums[CF_SUM_RED * p->sums] = products;
+    cf_eight x = {0}, xx = {0};
+    if (!cf_has_segments(p->at, t, j)) continue;
+    double *sums = cf_segment_sums(p, t, j);
+    update_x(p, t, j, &x, &xx);
+    restart(dim, p, t, j, omega, &sums[CF_SUM_RESIDUAL * p->sums], &sums[CF_SUM_RED * p->sums]);
     if (!p->sums_of_x) continue;
-    sums[CF_SUM_X * p->sums] = x;
-    sums[CF_SUM_X2 * p->sums] = xx;
+    sums[CF_SUM_X * p->sums] = cf_sum_eight(&x);
+    sums[CF_SUM_X2 * p->sums] = cf_sum_eight(&xx);
   }
 }
 
 /* --- to the coarse level ------------------------------------------------------------------------------ */
 
-/* What a piece of a fine row leaves to its coarse cells: of its red ones, since the black half sweep before, with omega = 1, has
- * left nothing on the others. */
-CF_KERNEL void gather(const int dim, const int edge, const cf_split *s, const cf_piece *q, float *coarse) {
-  const cf_half red = half_of(dim, s, q, 0);
-  const int end = CF_MIN(q->strip.to, s->half[red.parity]);
-  if (edge) {
-    cf_gather_edge(dim, &red, q->strip.from, end, coarse);
-    return;
-  }
-  CF_ROW_LOOP
-  for (int m = q->strip.from; m < end; ++m)
-    coarse[m] += (red.r[m] - red.diagonal[m] * red.e[m]) + cf_around(dim, 1, &red, m);
-}
-
-/* The coarse row whose last child is row j of plane t->k. */
-CF_KERNEL void restrict_row(const int dim, const cf_pass *p, const cf_strip *t, const int j) {
+/* What a fine row leaves to its coarse cells: of its red ones, since the black half sweep before, with omega = 1, has left nothing
+ * on the others. */
+CF_KERNEL void gather(const int dim, const cf_pass *p, const cf_strip *t, const int j, const int k,
+                      float *coarse) {
   const cf_split *s = p->at;
-  const cf_box *c = &p->below->box;
-  float *coarse = p->below->r + cf_box_at(c, 0, j / 2, dim == 3 ? t->k / 2 : 0);
-  cf_piece q;
-  for (int gathering = 0; gathering < 2; ++gathering)
-    for (int k = t->k - (dim == 3 ? t->k % 2 : 0); k <= t->k; ++k)
-      for (int jj = j - j % 2; jj <= j; ++jj) {
-        cf_strip there = *t;
-        there.k = k;
-        CF_FOR_PIECES(s, &there, jj, q) {
-          if (gathering && q.edge)
-            gather(dim, 1, s, &q, coarse);
-          else if (gathering)
-            gather(dim, 0, s, &q, coarse);
-          else
-            memset(coarse + q.strip.from, 0,
-                   (size_t)(CF_MIN(q.strip.to, c->n[0]) - q.strip.from) * sizeof(float));
-        }
-      }
+  const cf_ground g = cf_ground_of(dim, s);
+  const ptrdiff_t row = j * s->row + k * s->plane;
+  CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, k, q) {
+    const cf_sixteen_cells red = cf_cells_of(&g, q, 0);
+    const int m = (int)(cf_segment_at(q) - row);
+    cf_sixteen around, diagonal;
+    cf_sixteen_around(dim, &red, &around);
+    cf_sixteen_diagonal(dim, &red, &diagonal);
+    cf_sixteen rest = (CF_SIXTEEN_OF(red.r) - diagonal * CF_SIXTEEN_OF(red.e)) + red.coupling * around;
+    if (!red.inner) cf_sixteen_transferred(red.table, red.lane, &rest);
+    cf_add_sixteen(p->below->box.n[0] - m, (q->place & CF_PLACE_FIRST) != 0, &rest, coarse + m);
+  }
 }
 
+/* Coarse rows whose last child is a row of the strip. */
 CF_KERNEL void restrict_rows(const int dim, const cf_pass *p, const cf_strip *t) {
   const int *n = p->at->n;
   if (dim == 3 && t->k % 2 == 0 && t->k + 1 < n[2]) return;
-  CF_FOR_ROWS(j, t)
-  if (j % 2 == 1 || j + 1 == n[1]) restrict_row(dim, p, t, j);
+  CF_FOR_ROWS(j, t) {
+    if (j % 2 == 0 && j + 1 < n[1]) continue;
+    float *coarse = p->below->r + cf_box_at(&p->below->box, 0, j / 2, dim == 3 ? t->k / 2 : 0);
+    for (int k = dim == 3 ? t->k - t->k % 2 : 0; k <= t->k; ++k)
+      for (int jj = j - j % 2; jj <= j; ++jj) gather(dim, p, t, jj, k, coarse);
+  }
 }
 
 /* --- from the coarse level ---------------------------------------------------------------------------- */
-
-/* A coarse row and its neighbours along y, z and both on the side of the fine row; how much of those along an axis. */
-typedef struct mixture {
-  const float *own, *y, *z, *yz;
-  float of_y, of_z;
-} mixture;
 
 /* The neighbour of coarse row `place` along an axis, seen from fine row j: as a step, 0 beyond a wall. */
 CF_KERNEL ptrdiff_t step_to(const cf_split *s, const cf_box *c, const int a, const int j) {
@@ -233,93 +203,51 @@ CF_KERNEL ptrdiff_t step_to(const cf_split *s, const cf_box *c, const int a, con
   return step * c->stride[a];
 }
 
-CF_KERNEL mixture mixture_of(const int dim, const cf_pass *p, const int j, const int k) {
+CF_KERNEL cf_mixture mixture_of(const int dim, const cf_pass *p, const int j, const int k) {
   const cf_box *c = &p->below->box;
   const float *own = p->below->e + cf_box_at(c, 0, j / 2, dim == 3 ? k / 2 : 0);
   const ptrdiff_t y = step_to(p->at, c, 1, j), z = dim == 3 ? step_to(p->at, c, 2, k) : 0;
-  return (mixture){own, own + y, own + z, own + y + z, y != 0 ? 0.25f : 0, z != 0 ? 0.25f : 0};
+  return (cf_mixture){own, own + y, own + z, own + y + z, y != 0 ? 0.25f : 0, z != 0 ? 0.25f : 0};
 }
 
-/* Mixed along y and z: coarse cells [from, end). */
-CF_KERNEL void mix(const int dim, const mixture *of, const int from, const int end, float *line) {
-  const mixture x = *of;
-  const float y = x.of_y, z = x.of_z, own = (1 - y) * (1 - z), other = (1 - y) * z;
-  CF_ROW_LOOP
-  for (int m = from; m < end; ++m) {
-    const float below = own * x.own[m] + y * (1 - z) * x.y[m];
-    line[m] = dim == 3 ? below + (other * x.z[m] + y * z * x.yz[m]) : below;
+/* The coarse row that the successor of row j is the first to ask for; NULL: none. */
+CF_KERNEL const float *coarse_ahead(const int dim, const cf_pass *p, const cf_strip *t, const int j) {
+  const cf_box *c = &p->below->box;
+  const int place = (t->next_k + 1) / 2;
+  if (dim == 2 || t->next_k < 0 || place >= c->n[2]) return NULL;
+  return p->below->e + cf_box_at(c, 0, (t->next_j + j - t->j) / 2, place);
+}
+
+CF_KERNEL void prolong_row(const int dim, const cf_pass *p, const cf_strip *t, const int j) {
+  const cf_split *s = p->at;
+  const cf_mixture x = mixture_of(dim, p, j, t->k);
+  const ptrdiff_t row = j * s->row + t->k * s->plane, odd = s->odd;
+  cf_ahead ahead = cf_ahead_of(s, t, j);
+  const float *coarse = coarse_ahead(dim, p, t, j);
+  float *e = s->e;
+  CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, t->k, q) {
+    const cf_segment_table *table = &s->segments->table[q->table];
+    const ptrdiff_t at = cf_segment_at(q);
+    if (coarse != NULL && ahead.at < ahead.end)
+      __builtin_prefetch(coarse + (cf_segment_at(ahead.at) - ahead.row));
+    cf_fetch_segment(s, &ahead);
+    ++ahead.at;
+    for (int parity = 0; parity < 2; ++parity) {
+      float *to = e + at + parity * odd;
+      cf_sixteen taken;
+      if (q->table < CF_REGULAR_TABLES)
+        cf_sixteen_linear(dim, &x, at - row, table, parity, &taken);
+      else
+        cf_sixteen_spread(dim, &x, at - row, table, parity, &taken);
+      if (q->table >= CF_INNER_TABLES) cf_sixteen_transferred(table, parity * CF_SEGMENT, &taken);
+      CF_INTO_SIXTEEN(to, CF_SIXTEEN_OF(to) + taken);
+    }
   }
-}
-
-/* e of even (side -1) or odd cells (1) from `from` to `end`; at a wall there is no neighbour to mix with along x. */
-CF_KERNEL void spread(const cf_split *s, const float *line, const int side, int from, int end, float *e) {
-  const int last = s->half[0] - 1, wall = side < 0 ? 0 : last, periodic = s->plain->axis[0].periodic;
-  end = CF_MIN(end, s->half[side > 0]);
-  if (!periodic && wall >= from && wall < end) {
-    e[wall] += line[wall];
-    if (side < 0)
-      ++from;
-    else
-      --end;
-  }
-  CF_ROW_LOOP
-  for (int m = from; m < end; ++m) e[m] += 0.75f * line[m] + 0.25f * line[m + side];
-}
-
-CF_KERNEL void spread_edge(const int dim, const cf_segments *g, const cf_piece *q, const mixture *x,
-                           const int parity, const int end, float *e) {
-  const ptrdiff_t entry = cf_segment_entry(q->segment, parity, 0);
-  const cf_spread_from from = {x->own,
-                               x->y,
-                               x->z,
-                               g->faces + entry,
-                               {g->weight[0] + entry, g->weight[1] + entry, g->weight[2] + entry}};
-  cf_spread_edge(dim, &from, parity ? 1 : -1, q->strip.from, end, e);
-}
-
-CF_KERNEL void fetch(const void *from, const ptrdiff_t bytes) {
-  for (ptrdiff_t v = 0; v < bytes; v += CF_ALIGN) __builtin_prefetch((const char *)from + v);
-}
-
-/* Asks for the tables of the row that the strip's successor has for row j: they are read once a pass. */
-CF_KERNEL void fetch_tables(const int dim, const cf_split *s, const cf_strip *t, const int j) {
-  const cf_segments *g = s->segments;
-  const ptrdiff_t row = cf_segments_row(s, t->next_j + j - t->j, t->next_k);
-  for (ptrdiff_t v = g->first[row]; v < g->first[row + 1]; ++v) {
-    const cf_segment *q = &g->segment[v];
-    const ptrdiff_t n = 2 * (q->to - q->from), at = q->table;
-    if (at < 0) continue;
-    fetch(g->inverse + at, n * (ptrdiff_t)sizeof(float));
-    fetch(g->faces + at, n);
-    fetch(g->held + at, n);
-    for (int a = 0; a < dim; ++a) fetch(g->weight[a] + at, n);
-  }
+  for (; ahead.at < ahead.end; ++ahead.at) cf_fetch_segment(s, &ahead);
 }
 
 CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t) {
-  const cf_split *s = p->at;
-  float *line = t->scratch;
-  cf_piece q;
-  CF_FOR_ROWS(j, t) {
-    const mixture x = mixture_of(dim, p, j, t->k);
-    if (t->next_k >= 0) fetch_tables(dim, s, t, j);
-    CF_FOR_PIECES(s, t, j, q) {
-      if (t->next_k >= 0) {
-        cf_fetch_halves(s, &q.strip, s->e + cf_next_row(s, t, j));
-        cf_fetch_halves(s, &q.strip, s->r + cf_next_row(s, t, j));
-      }
-      float *e = s->e + j * s->row + t->k * s->plane;
-      const int from = q.strip.from, end = CF_MIN(q.strip.to, p->below->box.n[0]);
-      if (!q.edge) mix(dim, &x, from - 1, end + 1, line - (from - 1));
-      for (int parity = 0; parity < 2; ++parity) {
-        if (q.edge)
-          spread_edge(dim, s->segments, &q, &x, parity, CF_MIN(q.strip.to, s->half[parity]),
-                      e + parity * s->odd);
-        else
-          spread(s, line - (from - 1), parity ? 1 : -1, from, end, e + parity * s->odd);
-      }
-    }
-  }
+  CF_FOR_ROWS(j, t) prolong_row(dim, p, t, j);
 }
 
 /* --- which one ---------------------------------------------------------------------------------------- */
@@ -327,48 +255,49 @@ CF_KERNEL void prolong_rows(const int dim, const cf_pass *p, const cf_strip *t) 
 #define BOTH(name, parameters, ...)                                    \
   CF_CLONES static void name##_2d parameters { name(2, __VA_ARGS__); } \
   CF_CLONES static void name##_3d parameters { name(3, __VA_ARGS__); }
-BOTH(first, (const cf_split *s, const cf_strip *t, const float omega), s, t, omega)
 BOTH(last, (const cf_pass *p, const cf_strip *t, const float omega), p, t, omega)
 BOTH(update, (const cf_pass *p, const cf_strip *t, const float omega), p, t, omega)
 BOTH(restrict_rows, (const cf_pass *p, const cf_strip *t), p, t)
 BOTH(prolong_rows, (const cf_pass *p, const cf_strip *t), p, t)
 
-#define RELAX(name, dim, way)                                                                             \
-  CF_CLONES static void name(const cf_split *s, const cf_strip *t, const int colour, const float omega) { \
-    relax(dim, way, s, t, colour, omega);                                                                 \
+#define RELAX(name, dim, way)                                                                \
+  CF_CLONES static void name(const cf_split *s, const cf_segment_list *l, const cf_strip *t, \
+                             const int colour, const float omega) {                          \
+    relax(dim, way, s, l, t, colour, omega);                                                 \
   }
-RELAX(relax_2d, 2, ALL)
-RELAX(relax_3d, 3, ALL)
-RELAX(second_2d, 2, FRESH)
-RELAX(second_3d, 3, FRESH)
-RELAX(edges_2d, 2, EDGES)
-RELAX(edges_3d, 3, EDGES)
+RELAX(again_2d, 2, AGAIN)
+RELAX(again_3d, 3, AGAIN)
+RELAX(fresh_2d, 2, FRESH)
+RELAX(fresh_3d, 3, FRESH)
+RELAX(first_2d, 2, FIRST)
+RELAX(first_3d, 3, FIRST)
 
 void cf_stage_on_segments(const cf_pass *p, const int number, const cf_strip *t, const float omega) {
   const cf_split *s = p->at;
+  const cf_segment_list *all = &s->segments->all, *edges = &s->segments->edges;
   const bool deep = s->dim == 3;
   switch (p->stage[number]) {
     case CF_PASS_FORM:
       cf_stage_form_on_segments(p, t);
-      (deep ? first_3d : first_2d)(s, t, omega);
+      (deep ? first_3d : first_2d)(s, all, t, 0, omega);
       break;
     case CF_PASS_FIRST:
-      (deep ? first_3d : first_2d)(s, t, omega);
+      (deep ? first_3d : first_2d)(s, all, t, 0, omega);
       break;
     case CF_PASS_SECOND:
-      (deep ? second_3d : second_2d)(s, t, 1, omega);
+      (deep ? fresh_3d : fresh_2d)(s, all, t, 1, omega);
       break;
     case CF_PASS_RED:
-      (deep ? relax_3d : relax_2d)(s, t, 0, omega);
+      (deep ? again_3d : again_2d)(s, all, t, 0, omega);
       break;
     case CF_PASS_BLACK:
-      (deep ? relax_3d : relax_2d)(s, t, 1, omega);
+      (deep ? again_3d : again_2d)(s, all, t, 1, omega);
       break;
     case CF_PASS_RED_EDGES:
-      (deep ? edges_3d : edges_2d)(s, t, 0, omega);
+      (deep ? again_3d : again_2d)(s, edges, t, 0, omega);
       break;
     case CF_PASS_BLACK_EDGES:
-      (deep ? edges_3d : edges_2d)(s, t, 1, omega);
+      (deep ? again_3d : again_2d)(s, edges, t, 1, omega);
       break;
     case CF_PASS_LAST:
       (deep ? last_3d : last_2d)(p, t, omega);

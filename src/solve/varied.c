@@ -252,6 +252,7 @@ static cf_status make_levels(cf_varied *v, const cf_coefficients *c, const bool 
     coarse->excess[1] = at == 1 ? v->excess[1] : 0;
     coarse->excess[2] = at == 1 ? CF_CORNER_FIRST : CF_CORNER_BELOW;
     CF_TRY(cf_coarsen(l, coarse, &w));
+    CF_TRY(cf_coupled_find_spans(coarse));
   }
   return is_eliminated(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;
 }

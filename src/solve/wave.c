@@ -10,8 +10,6 @@
 #include "grid/sweep.h"
 #include "solve/segments.h"
 
-/* Elements of a half row that a column has in 2D. */
-#define COLUMN 256
 /* What the planes between the first and the last stage may take: half of a small second-level cache. */
 #define WINDOW_BYTES  (768 * 1024)
 #define TILE_ROWS_MIN 8
@@ -27,7 +25,7 @@ struct cf_wave_mark {
   char apart[CF_ALIGN - sizeof(atomic_int)];
 };
 
-int cf_wave_pieces(const cf_split *s) { return s->dim == 3 ? 1 : CF_MAX(1, s->width / COLUMN); }
+int cf_wave_pieces(const cf_split *s) { return s->dim == 3 ? 1 : CF_MAX(1, s->width / CF_WAVE_COLUMN); }
 
 cf_status cf_wave_create(cf_wave *w, const cf_split *finest) {
   *w = (cf_wave){.threads = finest->threads, .tiles = finest->n[1]};
@@ -71,8 +69,8 @@ static cf_strip strip_of(const cf_wave *w, const cf_split *s, const int j, const
                 .sum_step = pieces,
                 .scratch = scratch_of(w)};
   if (pieces > 1) {
-    t.from = piece * COLUMN;
-    if (piece + 1 < pieces) t.to = t.from + COLUMN;
+    t.from = piece * CF_WAVE_COLUMN;
+    if (piece + 1 < pieces) t.to = t.from + CF_WAVE_COLUMN;
   }
   return t;
 }
@@ -203,7 +201,7 @@ static void run_tile(const cf_wave *w, const cf_pass *p, const window *win, cons
 
 /* Rows of a tile, so that its window fits the cache and all threads get as many tiles. */
 static int tile_height(const cf_split *s, const int rows, const int stages, const int threads) {
-  const ptrdiff_t row = s->dim == 3 ? s->row : 2 * COLUMN;
+  const ptrdiff_t row = s->dim == 3 ? s->row : 2 * CF_WAVE_COLUMN;
   const int floats = s->fields == NULL ? 2 : 3 + s->dim; /* e, r; 1/diagonal, couplings */
   const ptrdiff_t fits = WINDOW_BYTES / ((stages + 2) * row * floats * (ptrdiff_t)sizeof(float));
   const int high = (int)CF_MIN(CF_MAX(fits, TILE_ROWS_MIN), rows);

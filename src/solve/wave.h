@@ -49,6 +49,9 @@ typedef struct cf_wave {
 cf_status cf_wave_create(cf_wave *w, const cf_split *finest);
 void cf_wave_destroy(cf_wave *w);
 
+/* Elements of a half row that a column has in 2D. */
+#define CF_WAVE_COLUMN 256
+
 /* Pieces that a row is cut into, hence sums in cf_pass.rows that a row takes. */
 int cf_wave_pieces(const cf_split *s);
 

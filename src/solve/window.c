@@ -12,6 +12,8 @@
 /* Of the box's cells a window has at most this share, and of its own cells at least that share is inside. */
 #define MOST_OF_BOX     0.5
 #define LEAST_OF_WINDOW 0.2
+/* Rows ahead of the one being copied. */
+#define AHEAD 2
 
 struct cf_window {
   cf_grid grid; /* of the window */
@@ -192,11 +194,26 @@ static cf_status find_runs(cf_window *w) {
 
 /* --- copying ------------------------------------------------------------------------------------------ */
 
+/* Asks for what is copied of a row that comes later: every row of the large box lies in other pages. */
+static void ask_for(const cf_window *w, const ptrdiff_t r, const cf_real *outer, const cf_real *own,
+                    const bool outwards) {
+  if (r >= cf_box_rows(&w->grid.box)) return;
+  const cf_real *there = outer + outer_row(w, r), *here = own + cf_box_row(&w->grid.box, r);
+  FOR_ROW_RUNS (w, r, q)
+    for (int i = q->low; i < q->high; i += CF_LANES) {
+      if (outwards)
+        __builtin_prefetch(there + i, 1), __builtin_prefetch(here + i);
+      else
+        __builtin_prefetch(there + i), __builtin_prefetch(here + i, 1);
+    }
+}
+
 static void fetch(const cf_window *w, const cf_cell from, const cf_cell to) {
   const cf_box *b = &w->grid.box;
   CF_PARALLEL_ROWS (b, w->grid.threads, r) {
     const cf_real *there = from.at + outer_row(w, r);
     cf_real *here = to.at + cf_box_row(b, r);
+    ask_for(w, r + AHEAD, from.at, to.at, false);
     FOR_ROW_RUNS (w, r, q) memcpy(here + q->low, there + q->low, (size_t)(q->high - q->low) * sizeof *here);
   }
 }
@@ -206,6 +223,7 @@ static void bring(const cf_window *w, const cf_cell from, const cf_cell to) {
   CF_PARALLEL_ROWS (b, w->grid.threads, r) {
     const cf_real *here = from.at + cf_box_row(b, r);
     cf_real *there = to.at + outer_row(w, r);
+    ask_for(w, r + AHEAD, to.at, from.at, true);
     FOR_ROW_RUNS (w, r, q) memcpy(there + q->low, here + q->low, (size_t)(q->high - q->low) * sizeof *here);
   }
 }
