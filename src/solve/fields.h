@@ -37,8 +37,11 @@ typedef struct cf_fields {
   float *line;                   /* a thread's rows in natural order */
   double *rows;                  /* sums of pieces of rows */
   ptrdiff_t sums;
-  bool is_gentle;  /* alpha holds some cells so much that they must not be over-relaxed */
-  double coupling; /* the most that couplings have of a cell's diagonal */
+  bool is_even;   /* `fixed` is the same everywhere: one row of it stands for all */
+  bool is_gentle; /* alpha holds some cells so much that they must not be over-relaxed */
+  double
+      jacobi; /* the most that couplings have of a cell's diagonal: no wave is damped less by Jacobi's iteration */
+  bool alone; /* half sweeps do without a level below */
 } cf_fields;
 
 /* Whether a level has the extents for it. */

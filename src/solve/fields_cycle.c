@@ -12,13 +12,20 @@
 #include "grid/sweep.h"
 #include "solve/varied_part.h"
 
-/* Half sweeps. */
+/* Half sweeps after the coarse correction. */
 #define AFTER 4
 #define OMEGA 1.2
 /* What rounded couplings do to the residual, of what it was, for each cell across the box; and how much of what is asked for that
  * may be. */
 #define ROUNDED 1e-8
 #define SEEN    0.1
+/* Where half sweeps are alone: what is to be gained in one pass at most; their number; and how far they aim below what is asked. */
+#define PASS_GAIN 1e-4
+#define LEAST     4
+#define MOST      36
+#define MARGIN    0.3
+/* r is to be within such a factor of 1. */
+#define FAR_OFF 1e4
 
 static void push(cf_pass *p, const cf_pass_stage stage, const double omega) {
   p->omega[p->count] = (float)omega;
@@ -41,21 +48,67 @@ static double sum_of(const cf_fields *f, const cf_pass_sum kind) {
   return cf_sum_ordered(f->rows + kind * f->sums, f->sums);
 }
 
+static bool is_alone(const cf_cycling *w) { return w->v->fields.alone; }
+
 /* What comes before the coarse correction, but for the first half sweep. */
-static void push_down(cf_pass *p) {
+static void push_down(const cf_cycling *w, cf_pass *p) {
+  if (is_alone(w)) return;
   push(p, CF_PASS_SECOND, OMEGA);
   push(p, CF_PASS_RESTRICT, 1);
 }
 
-void cf_fields_begin(cf_cycling *w) {
+static double first_omega(const cf_cycling *w) { return is_alone(w) ? 1 : OMEGA; }
+
+static void push_form(const cf_cycling *w, cf_pass *p) {
+  push(p, CF_PASS_FORM, first_omega(w));
+  push_down(w, p);
+}
+
+static void take_formed(cf_cycling *w) {
   const cf_fields *f = &w->v->fields;
-  cf_pass p = pass_of(w);
-  cf_varied_set_ghosts(w->v, w->x);
-  push(&p, CF_PASS_FORM, OMEGA);
-  push_down(&p);
-  cf_wave_run(&f->wave, &p);
   w->rr = sum_of(f, CF_SUM_RESIDUAL);
   w->xx = sum_of(f, CF_SUM_X2);
+  w->bb = sum_of(f, CF_SUM_B2);
+}
+
+static void form(cf_cycling *w) {
+  cf_pass p = pass_of(w);
+  cf_varied_set_ghosts(w->v, w->x);
+  push_form(w, &p);
+  cf_wave_run(&w->v->fields.wave, &p);
+  take_formed(w);
+}
+
+/* The largest value of some rows of b. */
+static double sample(const cf_box *b, const cf_cell f) {
+  const ptrdiff_t rows = cf_box_rows(b), step = CF_MAX(rows / 61, 1);
+  double largest = 0;
+  for (ptrdiff_t r = 0; r < rows; r += step)
+    for (int i = 0; i < b->n[0]; ++i) largest = CF_MAX(largest, fabs((double)f.at[cf_box_row(b, r) + i]));
+  return largest;
+}
+
+/* A power of two that makes numbers of a size about 1. */
+static double unit_for(const double size) {
+  int exponent = 0;
+  if (size > 0 && isfinite(size)) (void)frexp(size, &exponent);
+  return ldexp(1, CF_MAX(-1000, CF_MIN(1000, -exponent)));
+}
+
+void cf_fields_begin(cf_cycling *w) {
+  const cf_box *b = &w->v->level[0].box;
+  w->unit = unit_for(sample(b, w->b));
+  form(w);
+  const double size = sqrt(CF_MAX(w->bb, isfinite(w->rr) ? w->rr : 0) / (double)cf_box_cells(b));
+  if (size * w->unit < FAR_OFF && size * w->unit * FAR_OFF > 1) return;
+  w->unit = unit_for(size);
+  form(w);
+}
+
+void cf_fields_go_down(cf_cycling *w) {
+  cf_pass p = pass_of(w);
+  push_down(w, &p);
+  if (p.count > 0) cf_wave_run(&w->v->fields.wave, &p);
 }
 
 cf_varied_sums cf_fields_form(const cf_varied *v, const cf_cell x, const cf_cell b) {
@@ -68,31 +121,55 @@ cf_varied_sums cf_fields_form(const cf_varied *v, const cf_cell x, const cf_cell
                           sum_of(&v->fields, CF_SUM_X2)};
 }
 
-void cf_fields_go_down(cf_cycling *w) {
-  cf_pass p = pass_of(w);
-  push_down(&p);
-  cf_wave_run(&w->v->fields.wave, &p);
+/* Half sweeps that damp all errors alike (Golub and Varga 1961), as many as are to bring r where it is to be, or half the way
+ * there: single precision does not go further at once. The first one is done. */
+static void push_half_sweeps(const cf_cycling *w, cf_pass *p, double *last) {
+  const double J2 = w->v->fields.jacobi * w->v->fields.jacobi;
+  const double per_sweep = w->v->fields.jacobi / (1 + sqrt(1 - J2));
+  double gain = MARGIN * sqrt(w->target / w->rr), omega = 1;
+  if (gain < PASS_GAIN) gain = sqrt(gain);
+  const int wanted = (int)ceil(log(gain / 2) / log(CF_MAX(per_sweep, 1e-12)));
+  const int count = CF_MIN(CF_MAX((wanted + 1) / 2 * 2, LEAST), MOST);
+  for (int v = 1; v < count; ++v) {
+    omega = v == 1 ? 1 / (1 - J2 / 2) : 1 / (1 - J2 * omega / 4);
+    if (v + 1 < count) push(p, v == 1 ? CF_PASS_SECOND : v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, omega);
+  }
+  *last = omega;
+}
+
+/* The coarse correction, and half sweeps after it. */
+static void push_up(const cf_cycling *w, cf_pass *p, double *last) {
+  const cf_coupled *coarse = &w->v->level[1];
+  cf_varied_correct(w->v, 1);
+  cf_coupled_wrap(coarse, coarse->e);
+  push(p, CF_PASS_PROLONG, 1);
+  for (int v = 0; v < AFTER - 1; ++v) push(p, v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, OMEGA);
+  *last = OMEGA;
+}
+
+/* Whether the rounding of couplings would be seen in r. */
+static bool is_seen(const cf_cycling *w) {
+  const int *n = w->v->fields.split.n;
+  const double rounded = ROUNDED * CF_MAX(n[0], CF_MAX(n[1], n[2]));
+  return rounded * rounded * w->rr > SEEN * SEEN * w->target;
 }
 
 void cf_fields_go_up(cf_cycling *w, const bool last) {
   const cf_fields *f = &w->v->fields;
-  const int *n = f->split.n;
-  const double rounded = ROUNDED * CF_MAX(n[0], CF_MAX(n[1], n[2]));
-  const bool anew = rounded * rounded * w->rr > SEEN * SEEN * w->target;
+  const bool anew = is_seen(w), at_once = anew && !f->split.has_seam;
+  double omega;
   cf_pass p = pass_of(w);
-  cf_varied_correct(w->v, 1);
-  cf_coupled_wrap(&w->v->level[1], w->v->level[1].e);
-  push(&p, CF_PASS_PROLONG, 1);
-  for (int v = 0; v < AFTER - 1; ++v) push(&p, v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, OMEGA);
-  push(&p, anew ? CF_PASS_BLACK : CF_PASS_LAST, OMEGA);
-  push(&p, anew ? CF_PASS_ADD : CF_PASS_UPDATE, OMEGA);
-  if (!anew && !last) push_down(&p);
-  p.sums_of_x = last;
+  (is_alone(w) ? push_half_sweeps : push_up)(w, &p, &omega);
+  push(&p, anew ? CF_PASS_BLACK : CF_PASS_LAST, omega);
+  push(&p, anew ? CF_PASS_ADD : CF_PASS_UPDATE, first_omega(w));
+  if (at_once) push_form(w, &p);
+  if (!anew && !last) push_down(w, &p);
+  p.sums_of_x = !anew && (last || is_alone(w));
+  p.keep = w->kept ? NULL : w->v->best.at;
   cf_wave_run(&f->wave, &p);
-  if (anew) {
-    cf_fields_begin(w);
-    return;
-  }
-  w->rr = sum_of(f, CF_SUM_RESIDUAL) / (w->unit * w->unit);
-  if (last) w->xx = sum_of(f, CF_SUM_X2);
+  w->kept = true;
+  if (at_once) take_formed(w);
+  if (anew && !at_once) form(w);
+  if (!anew) w->rr = sum_of(f, CF_SUM_RESIDUAL) / (w->unit * w->unit);
+  if (p.sums_of_x) w->xx = sum_of(f, CF_SUM_X2);
 }

@@ -2,6 +2,7 @@
  *
  * From coefficients to the finest level apart by colour, and to the level below it: what open.c does in natural order.
  */
+#include <math.h>
 #include <omp.h>
 #include <string.h>
 
@@ -10,6 +11,9 @@
 
 /* Halves of rows that a thread has room for. */
 #define LINES CF_FIELDS_LINES
+
+/* The diagonals are scaled by what a sample tells of them: some may be so many times what was thought. */
+#define FAR_ABOVE 16.0f
 
 /* --- the finest level --------------------------------------------------------------------------------- */
 
@@ -21,22 +25,34 @@ CF_CLONES static void part(const int pairs, const float *line, float *even, floa
   }
 }
 
-/* fixed = free + held; what the coarse cells have of either so far, and these. */
-CF_CLONES static void part_fixed(const int pairs, const float *free, const float *held, float *even,
-                                 float *odd, float *coarse_free, float *coarse_held) {
+/* to[m] += both children's. */
+CF_CLONES static void add_pairs(const int n, const float *fine, float *to) {
   CF_ROW_LOOP
-  for (int m = 0; m < pairs; ++m) {
-    const float f = free[2 * m], g = free[2 * m + 1], h = held[2 * m], i = held[2 * m + 1];
-    even[m] = f + h;
-    odd[m] = g + i;
-    coarse_free[m] = coarse_free[m] + f + g;
-    coarse_held[m] = coarse_held[m] + h + i;
+  for (int m = 0; m < n; ++m) to[m] = to[m] + fine[2 * m] + fine[2 * m + 1];
+}
+
+/* The least share of what is no coupling in a diagonal, and the least 1/diagonal. */
+typedef struct least {
+  float share, inverse;
+} least;
+
+/* free += held. */
+CF_CLONES static least fix(const int n, const float *held, const float *inverse, float *free) {
+  float share = 1, all = INFINITY;
+#pragma omp simd reduction(min : share, all)
+  for (int i = 0; i < n; ++i) {
+    const float fixed = free[i] + held[i], here = fixed * inverse[i];
+    free[i] = fixed;
+    share = here < share ? here : share;
+    all = inverse[i] < all ? inverse[i] : all;
   }
+  return (least){share, all};
 }
 
 static int fill_row(const cf_varied *v, const cf_coefficients *c, const int j, const int k, float *line,
-                    float *coarse_free, float *coarse_held) {
+                    const ptrdiff_t coarse_row, least *of) {
   const cf_fields *f = &v->fields;
+  const cf_coupled *coarse = &v->level[1];
   const cf_split *s = &f->split;
   const int n = s->n[0], pairs = n / 2;
   const ptrdiff_t at = j * s->row + k * s->plane, step = 2 * (ptrdiff_t)s->width;
@@ -45,30 +61,53 @@ static int fill_row(const cf_varied *v, const cf_coefficients *c, const int j, c
   const int flags = cf_open_fill_row(v, c, j, k, &row);
   for (int a = 0; a < s->dim; ++a) part(pairs, row.c[a], f->c[a] + at, f->c[a] + at + s->odd);
   part(pairs, row.inverse, f->inverse + at, f->inverse + at + s->odd);
-  part_fixed(pairs, row.free, row.held, f->fixed + at, f->fixed + at + s->odd, coarse_free, coarse_held);
+  add_pairs(pairs, row.free, coarse->free + coarse_row);
+  add_pairs(pairs, row.held, coarse->held + coarse_row);
+  const least here = fix(n, row.held, row.inverse, row.free);
+  *of = (least){CF_MIN(of->share, here.share), CF_MIN(of->inverse, here.inverse)};
+  if (!f->is_even) part(pairs, row.free, f->fixed + at, f->fixed + at + s->odd);
   if (s->wraps[0]) f->c[0][at + s->half[0]] = f->c[0][at];
   return flags;
 }
 
-bool cf_fields_fill(cf_varied *v, const cf_coefficients *c) {
+/* Whether `fixed` is the same everywhere; then its row. */
+static bool fill_even(const cf_varied *v, const cf_coefficients *c) {
   const cf_fields *f = &v->fields;
+  const cf_split *s = &f->split;
+  if (c->alpha_at != NULL) return false;
+  for (int a = 0; a < s->dim; ++a)
+    for (int side = 0; side < 2; ++side)
+      if (cf_wall_is_held(v->A->walls.kind[a][side])) return false;
+  for (int i = 0; i < s->n[0]; ++i) f->fixed[cf_split_at(s, i)] = (float)(v->scale * c->alpha);
+  return true;
+}
+
+bool cf_fields_fill(cf_varied *v, const cf_coefficients *c) {
+  cf_fields *f = &v->fields;
   const cf_split *s = &f->split;
   const cf_coupled *coarse = &v->level[1];
   const int deep = s->dim == 3, pairs = s->n[0] / 2;
   int flags = 0;
-#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(coarse)) reduction(| : flags)
+  float share = 1, inverse = INFINITY;
+  f->is_even = fill_even(v, c);
+#pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(coarse)) reduction(|        \
+                                                                                            : flags) \
+    reduction(min                                                                                    \
+              : share, inverse)
   for (ptrdiff_t q = 0; q < coarse->rows; ++q)
     CF_TILE_ROWS (coarse, q, J, K) {
       float *line = f->line + LINES * (ptrdiff_t)s->width * omp_get_thread_num();
       const ptrdiff_t to = cf_box_at(&coarse->box, 0, J, K);
+      least of = {share, inverse};
       memset(coarse->free + to, 0, (size_t)pairs * sizeof(float));
       memset(coarse->held + to, 0, (size_t)pairs * sizeof(float));
       for (int k = K << deep; k < (K + 1) << deep; ++k)
-        for (int j = 2 * J; j < 2 * J + 2; ++j)
-          flags |= fill_row(v, c, j, k, line, coarse->free + to, coarse->held + to);
+        for (int j = 2 * J; j < 2 * J + 2; ++j) flags |= fill_row(v, c, j, k, line, to, &of);
       for (int m = 0; m < pairs; ++m) coarse->held[to + m] *= 0.5f;
+      share = of.share, inverse = of.inverse;
     }
-  return cf_open_take(v, flags);
+  f->jacobi = 1 - (double)CF_MAX(share, 0);
+  return cf_open_take(v, flags) && inverse > 1 / FAR_ABOVE;
 }
 
 /* --- the level below ---------------------------------------------------------------------------------- */
@@ -77,9 +116,9 @@ bool cf_fields_fill(cf_varied *v, const cf_coefficients *c) {
 CF_KERNEL void put_bytes(unsigned char *to, const cf_sixteen *value) {
   const cf_sixteen_ints v = __builtin_convertvector(*value, cf_sixteen_ints),
                         most = (cf_sixteen_ints){0} + 255;
-  const cf_sixteen_ints least = (v & (v < most)) | (most & (v >= most));
+  const cf_sixteen_ints held = (v & (v < most)) | (most & (v >= most));
   *(cf_sixteen_bytes *)to =
-      __builtin_convertvector(__builtin_convertvector(least, cf_sixteen_words), cf_sixteen_bytes);
+      __builtin_convertvector(__builtin_convertvector(held, cf_sixteen_words), cf_sixteen_bytes);
 }
 
 /* Couplings through faces in series with half of what lies below and above (coarsen.h), added to those of the coarse row, and the

@@ -11,7 +11,7 @@
  *     RED_EDGES, BLACK_EDGES  the same on edge segments (segments.h) alone
  *     LAST         a black half sweep that leaves the residual behind in r
  *     UPDATE       red: r -= A' e; all: x += gain e, and the sum of r^2; then FIRST on the new r
- *     ADD          x += gain e, on levels of fields alone (fields.h)
+ *     ADD          x += gain e; on levels of fields alone (fields.h)
  *     RESTRICT     the residual of SECOND, averaged over the children of a coarse cell; FIRST on the coarse level
  *     RESTRICT_RED the same after a black half sweep with omega = 1, which leaves nothing on black cells
  *     PROLONG      e += interpolated correction of the coarse level; on black cells alone if the red half sweep that
@@ -78,6 +78,7 @@ typedef struct cf_pass {
   double alpha, beta; /* not scaled */
   double shift;       /* FORM subtracts it from b - A x */
   double scale;       /* FORM divides by it */
+  cf_real *keep;      /* on levels of fields: where x goes before it is changed; NULL: nowhere */
   double gain, lift;  /* UPDATE: x += gain e + lift */
   double step;        /* in a region LAST and UPDATE take so much of the correction; gain contains it */
   bool sums_of_x;     /* UPDATE adds up x and its squares as well */

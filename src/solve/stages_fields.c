@@ -26,7 +26,7 @@ CF_KERNEL half half_of(const int dim, const cf_split *s, const int j, const int 
             .low = {f->c[0] + at},
             .high = {f->c[0] + row + (parity ? 1 : s->odd)},
             .inverse = f->inverse + at,
-            .fixed = f->fixed + at,
+            .fixed = f->fixed + (f->is_even ? at - row : at),
             .parity = parity};
   for (int a = 1; a < dim; ++a) {
     const ptrdiff_t stride = a == 1 ? s->row : s->plane;
@@ -141,6 +141,7 @@ CF_KERNEL void add_row(const cf_pass *p, const cf_strip *t, const int j) {
   const int n = cf_natural_count(s, t);
   if (t->next_k >= 0) cf_fetch_x(p, t, j);
   cf_real *x = p->x + cf_box_at(&s->plain->box, 2 * t->from, j, t->k);
+  if (p->keep != NULL) memcpy(p->keep + (x - p->x), x, (size_t)n * sizeof *x);
   cf_add_woven(n, p->gain, 0, s->e + at, s->e + at + s->odd, x);
   double *sums = cf_sums_of(p, t, j);
   if (p->sums_of_x) cf_sum_row(n, x, &sums[CF_SUM_X * p->sums], &sums[CF_SUM_X2 * p->sums]);
@@ -284,57 +285,121 @@ STAGES(prolong)
 
 /* --- the residual of the solution itself ---------------------------------------------------------------- */
 
-/* b - A x in double. */
-CF_KERNEL void remain(const int dim, const int form, const int n, const cf_varied_row *of, double *rest) {
-  const cf_varied_row o = *of;
-  CF_ROW_LOOP
-  for (int i = 0; i < n; ++i) rest[i] = (double)o.b[i] - cf_apply_at(dim, form, &o, i);
-}
-CF_VARIED_ROWS(remain, double *)
+/* A row of it: b - A x goes to r, times `factor`; squares of b - A x, b and x. */
+typedef struct forming {
+  double factor;
+  float *even, *odd;
+  double rr, bb, xx;
+} forming;
 
-CF_CLONES static void take_rest(const int n, const double factor, const double *rest, float *even,
-                                float *odd) {
-  cf_split_scaled(n / 2, factor, rest, even, odd);
+typedef struct lanes {
+  cf_eight rr, bb, xx;
+} lanes;
+
+/* Two differences of an axis, at cells i to i + 7; beta is at p (NULL: the number), 1/h^2 with the walls is `low` and `high`. */
+CF_KERNEL void add_axis(const int form, const cf_varied_row *o, const int a, const int i, const cf_eight *low,
+                        const cf_eight *high, cf_eight *sum) {
+  const ptrdiff_t s = o->stride[a];
+  const cf_real *x = o->x + i;
+  const cf_eight c = CF_EIGHT_OF(x), down = c - CF_EIGHT_OF(x - s), up = CF_EIGHT_OF(x + s) - c;
+  if (form == CF_BETA_NUMBER)
+    *sum += (double)o->beta_number * (*low * down - *high * up);
+  else
+    *sum += *low * CF_EIGHT_OF(o->beta[a] + i) * down - *high * CF_EIGHT_OF(o->beta[a] + i + s) * up;
 }
 
-CF_CLONES static void sums_of(const int n, const cf_real *f, double *sum, double *squares) {
-  cf_sum_row(n, f, sum, squares);
-}
-
-CF_CLONES static double squares_of(const int n, const double *f) {
-  cf_eight sum = {0};
-  int i = 0;
-  for (; i + CF_SUM_LANES <= n; i += CF_SUM_LANES) {
-    const cf_eight v = CF_EIGHT_OF_DOUBLES(f + i);
-    sum += v * v;
+/* Of eight cells. */
+CF_KERNEL void form_eight(const int dim, const int form, const cf_varied_row *o, const int i, cf_eight *rest,
+                          lanes *of) {
+  const cf_eight x = CF_EIGHT_OF(o->x + i), b = CF_EIGHT_OF(o->b + i);
+  const cf_eight low_x = CF_EIGHT_OF(o->lo_x + i), high_x = CF_EIGHT_OF(o->hi_x + i);
+  cf_eight sum = (double)o->alpha_number * x;
+  if (form != CF_ALPHA_NUMBER) sum = CF_EIGHT_OF(o->alpha + i) * x;
+  add_axis(form, o, 0, i, &low_x, &high_x, &sum);
+  CF_AXIS_LOOP
+  for (int a = 1; a < dim; ++a) {
+    const cf_eight low = (cf_eight){0} + (double)o->lo[a], high = (cf_eight){0} + (double)o->hi[a];
+    add_axis(form, o, a, i, &low, &high, &sum);
   }
+  *rest = b - sum;
+  of->rr += *rest * *rest;
+  of->bb += b * b;
+  of->xx += x * x;
+}
+
+/* The cells that are left over, in pairs. */
+CF_KERNEL void form_rest(const int dim, const int form, const int from, const int n, const cf_varied_row *o,
+                         forming *f) {
+  for (int i = from; i < n; ++i) {
+    const double rest = (double)o->b[i] - cf_apply_at(dim, form, o, i);
+    *(i % 2 == 0 ? &f->even[i / 2] : &f->odd[i / 2]) = (float)(f->factor * rest);
+    f->rr += rest * rest;
+    f->bb += (double)o->b[i] * (double)o->b[i];
+    f->xx += (double)o->x[i] * (double)o->x[i];
+  }
+}
+
+CF_KERNEL double joined(const cf_eight *sum) {
   double lane[CF_SUM_LANES];
-  memcpy(lane, &sum, sizeof lane);
-  for (int l = 0; i < n; ++i, ++l) lane[l] += f[i] * f[i];
+  memcpy(lane, sum, sizeof lane);
   return cf_sum_lanes(lane);
 }
+
+CF_KERNEL void remain(const int dim, const int form, const int n, const cf_varied_row *of, forming *f) {
+  const cf_varied_row o = *of;
+  lanes sums = {{0}, {0}, {0}};
+  int i = 0;
+  for (; i + 2 * CF_SUM_LANES <= n; i += 2 * CF_SUM_LANES) {
+    cf_eight low, high;
+    form_eight(dim, form, &o, i, &low, &sums);
+    form_eight(dim, form, &o, i + CF_SUM_LANES, &high, &sums);
+    CF_EIGHT_INTO_FLOATS(f->even + i / 2, f->factor * CF_EIGHT_EVEN(low, high));
+    CF_EIGHT_INTO_FLOATS(f->odd + i / 2, f->factor * CF_EIGHT_ODD(low, high));
+  }
+  f->rr = joined(&sums.rr), f->bb = joined(&sums.bb), f->xx = joined(&sums.xx);
+  form_rest(dim, form, i, n, &o, f);
+}
+CF_VARIED_ROWS(remain, forming *)
 
 static void form_rows(const cf_pass *p, const cf_strip *t) {
   const cf_split *s = p->at;
   const cf_varied *v = s->fields->of;
   const cf_run run = {2 * t->from, 2 * t->from + cf_natural_count(s, t)};
-  const int n = run.high - run.low;
-  double *rest = t->scratch;
   CF_FOR_ROWS(j, t) {
-    const ptrdiff_t at = j * s->row + t->k * s->plane + t->from;
+    float *even = s->r + j * s->row + t->k * s->plane + t->from;
+    forming f = {.factor = 1 / p->scale, .even = even, .odd = even + s->odd};
     cf_varied_row o = cf_varied_row_of(v, &run, j, t->k, (cf_cell){p->x});
     o.b = p->b + cf_box_at(&s->plain->box, run.low, j, t->k);
-    remain_row(s->dim, cf_varied_form_of(v), n, &o, rest);
-    take_rest(n, 1 / p->scale, rest, s->r + at, s->r + at + s->odd);
+    remain_row(s->dim, cf_varied_form_of(v), run.high - run.low, &o, &f);
     double *sums = cf_sums_of(p, t, j);
-    sums[CF_SUM_RESIDUAL * p->sums] = squares_of(n, rest);
-    sums_of(n, o.x, &sums[CF_SUM_X * p->sums], &sums[CF_SUM_X2 * p->sums]);
-    sums_of(n, o.b, &sums[CF_SUM_B * p->sums], &sums[CF_SUM_B2 * p->sums]);
+    sums[CF_SUM_RESIDUAL * p->sums] = f.rr;
+    sums[CF_SUM_B2 * p->sums] = f.bb;
+    sums[CF_SUM_X2 * p->sums] = f.xx;
   }
+}
+
+/* --- fetching ahead ------------------------------------------------------------------------------------- */
+
+/* What the same stage will be the first to touch in the next plane: its lowest row, or all of them where it is the first stage.
+ * It asks for couplings to the plane after that as well, and for e around. */
+static void fetch_row(const cf_split *s, const int j, const int k) {
+  const cf_fields *f = s->fields;
+  const ptrdiff_t at = j * s->row + k * s->plane;
+  const float *of[] = {f->c[0] + at, f->c[1] + at,         f->c[2] + at + s->plane, f->inverse + at,
+                       s->r + at,    s->e + at + s->plane, s->e + at - s->row};
+  for (ptrdiff_t m = 0; m < s->row; m += CF_ALIGN / (int)sizeof(float))
+    for (int v = 0; v < 7; ++v) __builtin_prefetch(of[v] + m, 0, 2);
+}
+
+static void fetch(const cf_split *s, const int number, const cf_strip *t) {
+  if (t->next_k < 0 || t->next_k == t->k || t->next_k + 1 >= s->n[2]) return;
+  const int rows = number == 0 ? t->end - t->j : 1;
+  for (int j = t->next_j; j < t->next_j + rows; ++j) fetch_row(s, j, t->next_k);
 }
 
 void cf_stage_on_fields(const cf_pass *p, const int number, const cf_strip *t, const float omega) {
   const int dim = p->at->dim - 2, form = p->at->fields->is_gentle;
+  fetch(p->at, number, t);
   switch (p->stage[number]) {
     case CF_PASS_FORM:
       form_rows(p, t);

@@ -222,23 +222,9 @@ static cf_status next_part(cf_varied *v, const int at, const bool all, cf_part *
   return CF_OK;
 }
 
-/* The finest level and the one below it, if they can be so. */
-static cf_status part_by_colour(cf_varied *v, const cf_coefficients *c) {
-  cf_coupled *l = &v->level[0];
-  v->apart = false;
-  if (c->region != NULL || v->depth < 2 || !cf_fields_suit(l) || !cf_open_is_bare(&v->level[1])) return CF_OK;
-  if (v->fields.of == NULL) CF_TRY(cf_fields_create(&v->fields, v, &v->A->level[0]));
-  if (!cf_fields_fill(v, c)) return CF_OK;
-  v->fields.is_gentle = l->is_gentle;
-  cf_fields_coarsen(v);
-  v->apart = true;
-  return CF_OK;
-}
-
 static cf_status make_levels(cf_varied *v, const cf_coefficients *c, const bool all) {
   cf_part w;
   v->renewed = 0;
-  CF_TRY(part_by_colour(v, c));
   if (!v->apart) {
     CF_TRY(next_part(v, 0, all, &w));
     CF_TRY(cf_varied_fill(v, c, &w));
@@ -265,13 +251,51 @@ cf_status cf_varied_make_plain(cf_varied *v) {
                              .beta_at = v->given_beta.at[0] != NULL ? &v->given_beta : NULL};
   const cf_part all = cf_coupled_all(&v->level[0]), coarse = cf_coupled_all(&v->level[1]);
   CF_TRY(cf_varied_fill(v, &c, &all));
-  return cf_coarsen(&v->level[0], &v->level[1], &coarse);
+  return v->depth == 1 ? CF_OK : cf_coarsen(&v->level[0], &v->level[1], &coarse);
 }
 
 static cf_status find_pockets(cf_varied *v) {
   const cf_coupled *l = &v->level[0];
   if (!l->is_open) return cf_pockets_find(&v->pockets, l, false);
   return l->is_fixed ? CF_OK : cf_pockets_take_all(&v->pockets, l);
+}
+
+/* Diagonals of up to so much are scaled to 1; the stiffness that goes with it. */
+typedef struct reach {
+  double diagonal, stiffness;
+} reach;
+
+static reach reach_of(const cf_varied *v, const double alpha, const double least, const double beta) {
+  const double couplings = 2 * v->A->grid.box.dim * beta / (v->A->grid.h * v->A->grid.h);
+  return (reach){alpha + couplings, least > 0 ? couplings / least : INFINITY};
+}
+
+static void set_scale(cf_varied *v, const reach *r) {
+  v->scale = r->diagonal > 0 ? 1 / CF_MAX(r->diagonal, 1e-300) : 1;
+}
+
+/* The finest level apart by colour and what is below it, if that can be done: v->apart. */
+static cf_status set_fields(cf_varied *v, const cf_coefficients *c, const reach *r) {
+  cf_coupled *l = &v->level[0];
+  v->apart = false;
+  if (c->region != NULL || v->levels < 2 || !cf_fields_suit(l) || !cf_open_is_bare(&v->level[1]))
+    return CF_OK;
+  if (v->fields.of == NULL) CF_TRY(cf_fields_create(&v->fields, v, &v->A->level[0]));
+  set_scale(v, r);
+  if (!cf_fields_fill(v, c)) return CF_OK;
+  cf_fields *f = &v->fields;
+  v->apart = true;
+  v->sweeps = false;
+  f->alone = f->jacobi <= CF_FIELDS_ALONE;
+  f->is_gentle = l->is_gentle && !f->alone;
+  v->depth = f->alone ? 1 : depth_for(v, f->jacobi / CF_MAX(1 - f->jacobi, 1e-300));
+  v->excess[0] = v->excess[1] = 0;
+  v->pockets.count = 0;
+  if (!f->alone) {
+    cf_fields_coarsen(v);
+    CF_TRY(make_levels(v, c, true));
+  }
+  return find_pockets(v);
 }
 
 cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficients *c) {
@@ -292,10 +316,18 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
   CF_TRY(prepare(v, c->region));
   CF_TRY(choose_fields(v, c));
   double alpha, least, beta;
-  cf_varied_find_range(v, c, &alpha, &least, &beta);
-  const double couplings = 2 * A->grid.box.dim * beta / (A->grid.h * A->grid.h);
-  v->scale = alpha + couplings > 0 ? 1 / CF_MAX(alpha + couplings, 1e-300) : 1;
-  const double stiffness = least > 0 ? couplings / least : INFINITY;
+  reach r = {0, 0};
+  v->apart = false;
+  if (c->region == NULL) {
+    cf_varied_find_range(v, c, true, &alpha, &least, &beta);
+    r = reach_of(v, alpha, least, beta);
+  }
+  if (r.stiffness > CF_SWEEPS_ENOUGH) CF_TRY(set_fields(v, c, &r));
+  if (v->apart) return CF_OK;
+  cf_varied_find_range(v, c, false, &alpha, &least, &beta);
+  r = reach_of(v, alpha, least, beta);
+  set_scale(v, &r);
+  const double stiffness = r.stiffness;
   v->sweeps = cf_varied_set_sweeps(v, least, stiffness);
   if (v->sweeps) {
     v->depth = 1;
@@ -324,7 +356,7 @@ bool cf_varied_stood(const cf_varied *v) { return v->stamp != 0 && v->renewed ==
 int cf_varied_depth(const cf_varied *v) { return v->depth; }
 
 const char *cf_varied_method(const cf_varied *v) {
-  return v->sweeps ? "sor" : v->depth == 1 ? "pcg" : "multigrid-pcg";
+  return v->sweeps || (v->apart && v->fields.alone) ? "sor" : v->depth == 1 ? "pcg" : "multigrid-pcg";
 }
 
 double cf_varied_wall_beta(const cf_varied *v, const int axis, const ptrdiff_t face) {

@@ -146,23 +146,24 @@ static bool tells(const cf_varied *v, const cf_varied_sums *s, const double enou
  * where cycles have done harm. */
 static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                        cf_solve_report *report, bool *done) {
-  const double bb = cf_varied_squares(v, b), tell = CF_CYCLES_TELL * CF_CYCLES_TELL;
-  const cf_cycles_until until = {o->tolerance * o->tolerance * bb, o->max_iterations};
-  cf_varied_sums s = {0, 0, 0};
-  *done = false;
-  if (!(bb > 0) || !isfinite(bb)) return CF_OK;
-  cf_varied_copy(v, x, v->best);
-  double start = INFINITY;
-  for (double before = INFINITY;; before = s.second) {
-    s = cf_varied_run_cycles(v, b, bb, &until, x, &report->iterations);
-    start = isinf(start) ? s.second : start;
-    *done = s.first <= until.enough && tells(v, &s, until.enough);
-    if (*done || s.first <= until.enough || !(s.second <= 0.25 * before) || !(s.first <= tell * s.second))
-      break;
+  cf_cycling w = {.v = v, .x = x, .b = b};
+  cf_varied_begin(&w);
+  if (!(w.bb > 0) || !isfinite(w.bb)) return CF_OK;
+  const double enough = o->tolerance * o->tolerance * w.bb, start = w.rr;
+  for (double before = INFINITY; w.rr <= 0.25 * before; cf_varied_begin(&w)) {
+    before = w.rr;
+    w.target = CF_MAX(enough, CF_CYCLES_TELL * CF_CYCLES_TELL * before);
+    cf_varied_run_cycles(&w, o->max_iterations, &report->iterations);
+    if (w.rr <= enough || !(w.rr <= w.target)) break;
   }
-  if (!(s.first <= HARM * start)) cf_varied_copy(v, v->best, x);
+  if (w.kept && !(w.rr <= HARM * start)) cf_varied_copy(v, v->best, x);
   restore_means(v, x);
-  s.second = bb;
+  cf_varied_sums s = {w.rr, w.bb, w.xx};
+  *done = s.first <= enough && tells(v, &s, enough);
+  if (s.first <= enough && !*done && v->apart) {
+    s = cf_fields_form(v, x, b);
+    *done = s.first <= enough;
+  }
   return *done ? cf_varied_judge(v, &s, o, report) : CF_OK;
 }
 

@@ -163,7 +163,7 @@ void cf_varied_correct(const cf_varied *v, const int at) {
   cf_coupled_run(&s, false);
 }
 
-double cf_varied_squares(const cf_varied *v, const cf_cell f) {
+static double squares_of(const cf_varied *v, const cf_cell f) {
   const cf_coupled *l = &v->level[0];
   CF_PARALLEL_COUPLED (l, w)
     CF_TILE_ROWS (l, w, j, k) *sum_of(v, j, k) = squares(l->box.n[0], f.at + cf_box_at(&l->box, 0, j, k));
@@ -191,8 +191,16 @@ static cf_coupled_pass pass_of(const work *w) {
 }
 
 static void begin_all(work *w) {
+  const cf_varied *v = w->v;
+  int exponent;
+  w->bb = squares_of(v, w->b);
+  if (!(w->bb > 0) || !isfinite(w->bb)) return;
+  (void)frexp(sqrt(w->bb / (double)cf_box_cells(&v->level[0].box)), &exponent);
+  w->unit = ldexp(1, CF_MAX(-1000, CF_MIN(1000, -exponent)));
+  if (!w->kept) cf_varied_copy(v, w->x, v->best);
+  w->kept = true;
   cf_coupled_pass s = pass_of(w);
-  cf_varied_set_ghosts(w->v, w->x);
+  cf_varied_set_ghosts(v, w->x);
   s.own = begin_run;
   cf_pass_add(&s, CF_STAGE_OWN, 0, 1);
   add_down(&s, BEFORE);
@@ -217,26 +225,19 @@ static void go_up(work *w, const bool last) {
   take_sums(w);
 }
 
-cf_varied_sums cf_varied_run_cycles(const cf_varied *v, const cf_cell b, const double bb,
-                                    const cf_cycles_until *until, const cf_cell x, int *iterations) {
-  work w = {.v = v, .x = x, .b = b};
-  int exponent;
-  (void)frexp(sqrt(bb / (double)cf_box_cells(&v->level[0].box)), &exponent);
-  w.unit = ldexp(1, CF_MAX(-1000, CF_MIN(1000, -exponent)));
-  w.target = until->enough;
-  (v->apart ? cf_fields_begin : begin_all)(&w);
-  const double begun = w.rr;
+void cf_varied_begin(work *w) { (w->v->apart ? cf_fields_begin : begin_all)(w); }
+
+void cf_varied_run_cycles(work *w, const int limit, int *iterations) {
+  const bool apart = w->v->apart;
   double rate = 1, most = FIRST_MOST;
-  w.target = CF_MAX(until->enough, CF_CYCLES_TELL * CF_CYCLES_TELL * begun);
-  while (w.rr > w.target && *iterations < until->limit) {
-    const double before = w.rr;
-    const bool last = HOPE * before * rate <= w.target;
-    (v->apart ? cf_fields_go_up : go_up)(&w, last);
+  while (w->rr > w->target && *iterations < limit) {
+    const double before = w->rr;
+    const bool last = HOPE * before * rate <= w->target;
+    (apart ? cf_fields_go_up : go_up)(w, last);
     ++*iterations;
-    rate = w.rr / before;
+    rate = w->rr / before;
     if (!(rate <= most * most)) break;
     most = RATE_MOST;
-    if (last && w.rr > w.target) (v->apart ? cf_fields_go_down : go_down)(&w);
+    if (last && w->rr > w->target) (apart ? cf_fields_go_down : go_down)(w);
   }
-  return (cf_varied_sums){w.rr, begun, w.xx};
 }

@@ -159,6 +159,9 @@ static void fill_run(const filling *f, const cf_run *run, const int j, const int
 
 /* --- the range of coefficients -------------------------------------------------------------------------- */
 
+/* Rows of a sample, about. */
+#define SAMPLE 500
+
 /* Least and largest of what is met. */
 typedef struct range {
   double least, most;
@@ -188,9 +191,19 @@ CF_CLONES static range range_of_run(const int n, const cf_real *f, const unsigne
   return (range){(double)least, (double)most};
 }
 
+/* Of some rows of all of a box. */
+static range range_of_sample(const cf_box *b, const cf_real *f) {
+  const ptrdiff_t rows = cf_box_rows(b), step = (rows / SAMPLE) | 1;
+  range all = {INFINITY, -INFINITY};
+  for (ptrdiff_t r = 0; r < rows; r += step)
+    all = wider(all, range_of_run(b->n[0], f + cf_box_row(b, r), NULL));
+  return all;
+}
+
 /* Of a field that has the cells' indices. */
-static range range_of(const cf_varied *v, const cf_real *f) {
+static range range_of(const cf_varied *v, const bool sample, const cf_real *f) {
   const cf_coupled *l = &v->level[0];
+  if (sample) return range_of_sample(&l->box, f);
   double least = INFINITY, most = -INFINITY;
 #pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(l)) reduction(min      \
                                                                                        : least) \
@@ -209,13 +222,13 @@ static range range_of(const cf_varied *v, const cf_real *f) {
 }
 
 /* The largest alpha and beta that the equation meets, and the least alpha. */
-void cf_varied_find_range(const cf_varied *v, const cf_coefficients *c, double *alpha, double *least,
-                          double *beta) {
+void cf_varied_find_range(const cf_varied *v, const cf_coefficients *c, const bool sample, double *alpha,
+                          double *least, double *beta) {
   range of_alpha = {c->alpha, c->alpha}, of_beta = {0, c->beta};
-  if (c->alpha_at != NULL) of_alpha = wider((range){INFINITY, 0}, range_of(v, c->alpha_at->at));
+  if (c->alpha_at != NULL) of_alpha = wider((range){INFINITY, 0}, range_of(v, sample, c->alpha_at->at));
   if (c->beta_at != NULL) of_beta.most = 0;
   for (int a = 0; a < v->A->grid.box.dim && c->beta_at != NULL; ++a)
-    of_beta = wider(of_beta, range_of(v, c->beta_at->at[a]));
+    of_beta = wider(of_beta, range_of(v, sample, c->beta_at->at[a]));
   *alpha = of_alpha.most;
   *least = of_alpha.least;
   *beta = of_beta.most;

@@ -57,9 +57,9 @@ struct cf_varied {
 
 /* --- from coefficients to couplings (varied_fill.c) ---------------------------------------------------- */
 
-/* The largest alpha and beta that the equation meets, and the least alpha. */
-void cf_varied_find_range(const cf_varied *v, const cf_coefficients *c, double *alpha, double *least,
-                          double *beta);
+/* The largest alpha and beta that the equation meets, and the least alpha; sample: of some rows of the whole box. */
+void cf_varied_find_range(const cf_varied *v, const cf_coefficients *c, bool sample, double *alpha,
+                          double *least, double *beta);
 
 /* Fills a part of the finest level and finishes it. CF_NO_MEMORY. */
 cf_status cf_varied_fill(cf_varied *v, const cf_coefficients *c, const cf_part *w);
@@ -119,38 +119,37 @@ double cf_varied_advance(const cf_varied *v, double a, double scale, cf_cell x);
 /* Whether the present equation is one for them. */
 bool cf_varied_can_cycle(const cf_varied *v);
 
-/* The squares of f on all of the box. */
-double cf_varied_squares(const cf_varied *v, cf_cell f);
-
-/* Their state: r is in units of 1/unit; the squares of r, of x when they were formed last, and what the former is to be. */
+/* Their state: r is in units of 1/unit; the squares of r, of b, of x when they were formed last; what the first is to be. What x was
+ * before it changed is in v->best if it has been kept there. */
 typedef struct cf_cycling {
   const cf_varied *v;
   cf_cell x, b;
-  double unit, rr, xx, target;
+  double unit, rr, bb, xx, target;
+  bool kept;
 } cf_cycling;
 
-/* r from x, and half sweeps before the first coarse correction; that correction, half sweeps after it, x and r, and unless it is
- * thought to be the last one those before the next; these alone. On a finest level apart by colour (fields_cycle.c). */
+/* r from x, and half sweeps before the first coarse correction. */
+void cf_varied_begin(cf_cycling *w);
+
+/* Cycles until the target or the limit is reached, or one does not gain what it should. */
+void cf_varied_run_cycles(cf_cycling *w, int limit, int *iterations);
+
+/* level[at].e from level[at].r, `at` below the finest one: a W-cycle. */
+void cf_varied_correct(const cf_varied *v, int at);
+
+/* --- on a finest level apart by colour (fields_cycle.c) ------------------------------------------------- */
+
+/* Up to this share of couplings in the diagonals half sweeps do there without any cycle. */
+#define CF_FIELDS_ALONE 0.965
+
+/* As above; the coarse correction, half sweeps after it, x and r, and those before the next one unless this is thought to be the
+ * last; these alone. */
 void cf_fields_begin(cf_cycling *w);
 void cf_fields_go_up(cf_cycling *w, bool last);
 void cf_fields_go_down(cf_cycling *w);
 
 /* The squares of b - A x, of b, and of x; r and e are scratch. */
 cf_varied_sums cf_fields_form(const cf_varied *v, cf_cell x, cf_cell b);
-
-/* level[at].e from level[at].r, `at` below the finest one: a W-cycle. */
-void cf_varied_correct(const cf_varied *v, int at);
-
-/* What ends them: the square of the residual, and all iterations. */
-typedef struct cf_cycles_until {
-  double enough;
-  int limit;
-} cf_cycles_until;
-
-/* Cycles until then, or until one does not gain what it should; bb: the square of b. The squares of the residual that is
- * left, of the one that there was, and of x. */
-cf_varied_sums cf_varied_run_cycles(const cf_varied *v, cf_cell b, double bb, const cf_cycles_until *until,
-                                    cf_cell x, int *iterations);
 
 /* --- half sweeps alone (varied_sweeps.c) --------------------------------------------------------------- */
 
