@@ -6,7 +6,7 @@
 #include "base/mem.h"
 
 /* What two grids may leave: clusters are matched up to this (clusters.h). Seven-point Laplacians of equal couplings have 6. */
-#define KAPPA 10.0f
+#define KAPPA 8.0f
 /* Where that leaves more than a fourth of the nodes, a 2.5th in the plane, as it does where the neighbours of many nodes are all
  * taken, it is done again, so often at most, with a bound that many times larger. */
 #define MORE       3

@@ -304,7 +304,8 @@ cf_status cf_varied_set(cf_varied *v, const cf_helmholtz *A, const cf_coefficien
                       v->tiles == c->region->tiles && v->alpha_number == c->alpha &&
                       v->beta_number == c->beta;
   v->stamp = 0;
-  v->knows_clusters = v->clustered = false;
+  v->clustered = false;
+  cf_clusters_clear(&v->clusters);
   if (c->region != NULL)
     for (int a = 0; a < 3; ++a)
       if (c->region->grid.box.n[a] != A->grid.box.n[a] ||
@@ -408,15 +409,15 @@ static void careful_cycle(const cf_varied *v, const int at) {
   cf_coupled_smooth_back(l, 1, v->band_sweeps);
 }
 
-/* Sweeps on the finest level cost little beside what is below. */
+/* Three sweeps on either side, which cost little beside what is below. */
 static void clustered_cycle(const cf_varied *v) {
   const cf_coupled *l = &v->level[0];
   const cf_band_sweeps none = {0, 1};
   cf_coupled_smooth_first(l, 1, none, false);
+  cf_coupled_smooth(l, 1, none, 1);
   cf_coupled_smooth_again(l, 1);
   cf_clusters_correct(&v->clusters, l);
-  cf_coupled_smooth_back(l, 1, none);
-  cf_coupled_smooth_back(l, 1, none);
+  for (int sweep = 0; sweep < 3; ++sweep) cf_coupled_smooth_back(l, 1, none);
 }
 
 void cf_varied_cycle(const cf_varied *v, const int at) {

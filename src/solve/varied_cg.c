@@ -24,9 +24,11 @@
 #define STARTS_MOST 5
 /* Near walls, before and after the coarse correction. */
 #define BAND_SWEEPS 3
-/* So many iterations are far more than any equation should need: then the cycle becomes symmetric, with which conjugate
- * gradients cannot stall. */
-#define PATIENCE 25
+/* So many iterations are far more than any equation should need, and if two or four leave so much of the residual (in squares)
+ * there will be as many: then the cycle becomes one with which conjugate gradients cannot stall. */
+#define PATIENCE  25
+#define SLOW_AT_2 0.5
+#define SLOW_AT_4 0.01
 /* One start gains so much at most: then how large x has become, and its rounding, is looked at anew. */
 #define START_GAIN (1024 * CF_REAL_EPSILON)
 /* Below this share of alpha in the diagonal a mean of b is round-off, and tells nothing. */
@@ -54,6 +56,7 @@ static void iterate(const cf_varied *v, double rr, const double enough, const in
                     int *iterations) {
   const double scale = scale_for(v, rr);
   const int most = v->careful ? limit : CF_MIN(limit, *iterations + PATIENCE);
+  const double first = rr;
   double zr_old = 0, a = 0;
   cf_varied_convert(v, scale);
   for (int it = 0; rr > enough && *iterations < most; ++it) {
@@ -67,6 +70,7 @@ static void iterate(const cf_varied *v, double rr, const double enough, const in
     rr = cf_varied_advance(v, a, scale, x);
     zr_old = z.second;
     ++*iterations;
+    if (!v->careful && ((it == 1 && rr > SLOW_AT_2 * first) || (it == 3 && rr > SLOW_AT_4 * first))) break;
   }
 }
 
@@ -110,15 +114,24 @@ static void restore_means(const cf_varied *v, const cf_cell x) {
   if (has_loose(v)) cf_pockets_restore_means(&v->loose, &v->level[0], x);
 }
 
+/* From now on the cycle is symmetric: over clusters, wherever there are any; they are made here for the present coefficients. */
+static cf_status take_care(cf_varied *v) {
+  bool made = true;
+  if (v->careful) return CF_OK;
+  v->careful = true;
+  if (v->depth > 1 && v->clusters.levels == 0) CF_TRY(cf_clusters_make(&v->clusters, &v->level[0], &made));
+  v->clustered = v->depth > 1 && made;
+  return CF_OK;
+}
+
 /* Starts until the residual's square is `enough` or nothing is gained; *s: what has been formed of x. */
-static void approach(cf_varied *v, const cf_cell b, const double enough, const int limit, const cf_cell x,
-                     cf_varied_sums *s, int *iterations) {
+static cf_status approach(cf_varied *v, const cf_cell b, const double enough, const int limit,
+                          const cf_cell x, cf_varied_sums *s, int *iterations) {
   for (int start = 0; start < STARTS_MOST && *iterations < limit; ++start) {
     const cf_varied_sums before = *s;
     const double floor = floor_of(v, s), most = START_GAIN * START_GAIN * s->first;
     const double target = CF_MAX(enough, floor);
-    const int begun = *iterations;
-    if (s->first <= target) return;
+    if (s->first <= target) return CF_OK;
     cf_varied_copy(v, x, v->best);
     iterate(v, s->first, CF_MAX(target, most), limit, x, iterations);
     restore_means(v, x);
@@ -128,9 +141,10 @@ static void approach(cf_varied *v, const cf_cell b, const double enough, const i
       cf_varied_copy(v, v->best, x);
       *s = cf_varied_form(v, x, b);
     }
-    if (stalled && v->careful) return;
-    v->careful = v->careful || stalled || *iterations - begun >= PATIENCE;
+    if (stalled && v->careful) return CF_OK;
+    if (s->first > target && (stalled || s->first > most)) CF_TRY(take_care(v));
   }
+  return CF_OK;
 }
 
 /* Cycles have done harm if they leave so many times the residual (in squares) that they began with. A few times more of it may
@@ -167,19 +181,6 @@ static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o,
   return *done ? cf_varied_judge(v, &s, o, report) : CF_OK;
 }
 
-/* Whether the cycle goes by clusters; makes them where nobody has yet. Only fields have couplings that are far from alike. */
-static cf_status choose_clusters(cf_varied *v) {
-  if (!v->knows_clusters) {
-    bool made = false;
-    cf_clusters_clear(&v->clusters);
-    if (v->stamp == 0 && v->depth > 1 && cf_clusters_are_called_for(&v->level[0]))
-      CF_TRY(cf_clusters_make(&v->clusters, &v->level[0], &made));
-    v->knows_clusters = true;
-  }
-  v->clustered = v->clusters.levels > 0;
-  return CF_OK;
-}
-
 /* By conjugate gradients, from where x is. */
 static cf_status gradients(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                            cf_solve_report *report) {
@@ -189,11 +190,11 @@ static cf_status gradients(cf_varied *v, const cf_cell b, const cf_solve_options
     cf_varied_clear(v, x);
     return CF_OK;
   }
-  CF_TRY(choose_clusters(v));
-  v->careful = v->clustered; /* both cycles are symmetric */
-  v->thorough = false;
+  v->careful = v->thorough = false;
+  if (v->given_beta.at[0] != NULL && cf_clusters_are_called_for(&v->level[0])) CF_TRY(take_care(v));
   v->band_sweeps = (cf_band_sweeps){BAND_SWEEPS, 1}; /* over-relaxed ones do harm in necks of a cell */
-  approach(v, b, o->tolerance * o->tolerance * s.second, o->max_iterations, x, &s, &report->iterations);
+  CF_TRY(
+      approach(v, b, o->tolerance * o->tolerance * s.second, o->max_iterations, x, &s, &report->iterations));
   return cf_varied_judge(v, &s, o, report);
 }
 

@@ -27,9 +27,8 @@ struct cf_varied {
   bool thorough;   /* two corrections from each level below, without sweeps of their own near walls */
   cf_band_sweeps band_sweeps; /* near walls, before and after the coarse correction */
   cf_band band;
-  cf_clusters clusters; /* where couplings are far from alike */
+  cf_clusters clusters; /* for the present coefficients, where they have been called for */
   bool clustered;       /* the cycle goes by them */
-  bool knows_clusters;  /* since coefficients were set last it is known whether they serve */
   cf_pockets pockets;
   cf_pockets loose;     /* pockets that alpha alone fixes, for conjugate gradients: */
   uint64_t loose_stamp; /* of the region that they were found in */
