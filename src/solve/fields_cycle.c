@@ -21,9 +21,9 @@
 #define SEEN    0.1
 /* Where half sweeps are alone: what is to be gained in one pass at most; their number; and how far they aim below what is asked. */
 #define PASS_GAIN 1e-4
-#define LEAST     4
+#define LEAST     8
 #define MOST      36
-#define MARGIN    0.3
+#define MARGIN    0.7
 /* r is to be within such a factor of 1. */
 #define FAR_OFF 1e4
 
@@ -69,6 +69,8 @@ static void take_formed(cf_cycling *w) {
   w->rr = sum_of(f, CF_SUM_RESIDUAL);
   w->xx = sum_of(f, CF_SUM_X2);
   w->bb = sum_of(f, CF_SUM_B2);
+  w->x_sum = sum_of(f, CF_SUM_X);
+  w->b_sum = sum_of(f, CF_SUM_B);
 }
 
 static void form(cf_cycling *w) {
@@ -164,12 +166,14 @@ void cf_fields_go_up(cf_cycling *w, const bool last) {
   push(&p, anew ? CF_PASS_ADD : CF_PASS_UPDATE, first_omega(w));
   if (at_once) push_form(w, &p);
   if (!anew && !last) push_down(w, &p);
-  p.sums_of_x = !anew && (last || is_alone(w));
-  p.keep = w->kept ? NULL : w->v->best.at;
+  p.sums_of_x = !anew && (last || is_alone(w) || w->v->pockets.count > 0);
+  p.keep = w->kept || is_alone(w) ? NULL : w->v->best.at; /* half sweeps alone do no harm */
   cf_wave_run(&f->wave, &p);
-  w->kept = true;
+  w->kept = !is_alone(w);
   if (at_once) take_formed(w);
   if (anew && !at_once) form(w);
   if (!anew) w->rr = sum_of(f, CF_SUM_RESIDUAL) / (w->unit * w->unit);
-  if (p.sums_of_x) w->xx = sum_of(f, CF_SUM_X2);
+  if (!p.sums_of_x) return;
+  w->xx = sum_of(f, CF_SUM_X2);
+  w->x_sum = sum_of(f, CF_SUM_X);
 }

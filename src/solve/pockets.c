@@ -303,6 +303,13 @@ void cf_pockets_restore_means(const cf_pockets *q, const cf_coupled *l, const cf
   shift(q, l, true, f);
 }
 
+void cf_pockets_take_mean(const cf_pockets *q, const double sum) { q->mean[0] = sum / q->cells[0]; }
+
+void cf_pockets_restore_mean(const cf_pockets *q, const cf_coupled *l, const double sum, const cf_cell f) {
+  q->sum[0] = sum;
+  if (excess_of(q, 0, true) != 0) shift(q, l, true, f);
+}
+
 void cf_pockets_ask_means(const cf_pockets *q, const cf_coupled *l, const double alpha, const cf_cell b) {
   if (q->count == 0) return;
   sum_up(q, l, b);

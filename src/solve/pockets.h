@@ -39,6 +39,10 @@ void cf_pockets_remove_means(const cf_pockets *q, const cf_coupled *l, cf_cell f
 void cf_pockets_keep_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);
 void cf_pockets_restore_means(const cf_pockets *q, const cf_coupled *l, cf_cell f);
 
+/* The same for a single pocket, where the sum of f is known. */
+void cf_pockets_take_mean(const cf_pockets *q, double sum);
+void cf_pockets_restore_mean(const cf_pockets *q, const cf_coupled *l, double sum, cf_cell f);
+
 /* With loose pockets: the means that alpha and b ask for, to be restored; and a correction without means. The cycle makes constants
  * of small pockets far too large where alpha is small, for coarse cells that hold a part of one hold others as well. */
 void cf_pockets_ask_means(const cf_pockets *q, const cf_coupled *l, double alpha, cf_cell b);

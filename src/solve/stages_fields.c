@@ -285,15 +285,15 @@ STAGES(prolong)
 
 /* --- the residual of the solution itself ---------------------------------------------------------------- */
 
-/* A row of it: b - A x goes to r, times `factor`; squares of b - A x, b and x. */
+/* A row of it: b - A x goes to r, times `factor`; squares of b - A x, b and x, and sums of b and x. */
 typedef struct forming {
   double factor;
   float *even, *odd;
-  double rr, bb, xx;
+  double rr, bb, xx, b, x;
 } forming;
 
 typedef struct lanes {
-  cf_eight rr, bb, xx;
+  cf_eight rr, bb, xx, b, x;
 } lanes;
 
 /* Two differences of an axis, at cells i to i + 7; beta is at p (NULL: the number), 1/h^2 with the walls is `low` and `high`. */
@@ -325,6 +325,8 @@ CF_KERNEL void form_eight(const int dim, const int form, const cf_varied_row *o,
   of->rr += *rest * *rest;
   of->bb += b * b;
   of->xx += x * x;
+  of->b += b;
+  of->x += x;
 }
 
 /* The cells that are left over, in pairs. */
@@ -336,6 +338,8 @@ CF_KERNEL void form_rest(const int dim, const int form, const int from, const in
     f->rr += rest * rest;
     f->bb += (double)o->b[i] * (double)o->b[i];
     f->xx += (double)o->x[i] * (double)o->x[i];
+    f->b += (double)o->b[i];
+    f->x += (double)o->x[i];
   }
 }
 
@@ -347,7 +351,7 @@ CF_KERNEL double joined(const cf_eight *sum) {
 
 CF_KERNEL void remain(const int dim, const int form, const int n, const cf_varied_row *of, forming *f) {
   const cf_varied_row o = *of;
-  lanes sums = {{0}, {0}, {0}};
+  lanes sums = {{0}, {0}, {0}, {0}, {0}};
   int i = 0;
   for (; i + 2 * CF_SUM_LANES <= n; i += 2 * CF_SUM_LANES) {
     cf_eight low, high;
@@ -357,6 +361,7 @@ CF_KERNEL void remain(const int dim, const int form, const int n, const cf_varie
     CF_EIGHT_INTO_FLOATS(f->odd + i / 2, f->factor * CF_EIGHT_ODD(low, high));
   }
   f->rr = joined(&sums.rr), f->bb = joined(&sums.bb), f->xx = joined(&sums.xx);
+  f->b = joined(&sums.b), f->x = joined(&sums.x);
   form_rest(dim, form, i, n, &o, f);
 }
 CF_VARIED_ROWS(remain, forming *)
@@ -375,6 +380,8 @@ static void form_rows(const cf_pass *p, const cf_strip *t) {
     sums[CF_SUM_RESIDUAL * p->sums] = f.rr;
     sums[CF_SUM_B2 * p->sums] = f.bb;
     sums[CF_SUM_X2 * p->sums] = f.xx;
+    sums[CF_SUM_B * p->sums] = f.b;
+    sums[CF_SUM_X * p->sums] = f.x;
   }
 }
 

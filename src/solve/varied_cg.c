@@ -35,6 +35,8 @@
 #define MEAN_LOST 1e-8
 /* So far (in squares) above what rounding of x may do, a residual is told without being formed anew. */
 #define ROUNDING_SEEN 1e4
+/* A mean of b may be so much of what the tolerance allows where nothing fixes the level of x. */
+#define MEAN_SHARE 1e-3
 /* What is left may be so many times the floor (in squares) where rounding is the reason. */
 #define NEAR_ROUNDING 16
 
@@ -156,6 +158,20 @@ static bool tells(const cf_varied *v, const cf_varied_sums *s, const double enou
   return sizeof(cf_real) == sizeof(double) && ROUNDING_SEEN * floor_of(v, s) <= enough;
 }
 
+/* Cycles on a finest level apart by colour add up b and x anyway. */
+static bool watches_mean(const cf_varied *v) { return v->apart && v->pockets.all && v->pockets.count > 0; }
+
+/* A mean of b that would be seen in the residual is taken out; that of x is to stay. */
+static void watch_mean(cf_cycling *w, const double tolerance) {
+  const cf_pockets *q = &w->v->pockets;
+  const double most = MEAN_SHARE * tolerance;
+  if (!(w->b_sum * w->b_sum <= most * most * w->bb * q->cells[0])) {
+    cf_pockets_remove_means(q, &w->v->level[0], w->b);
+    cf_varied_begin(w);
+  }
+  cf_pockets_take_mean(q, w->x_sum);
+}
+
 /* By stationary cycles, as far as they go. *done: the tolerance is met. x is what it was where b or A x is not finite, or
  * where cycles have done harm. */
 static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
@@ -163,6 +179,7 @@ static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o,
   cf_cycling w = {.v = v, .x = x, .b = b};
   cf_varied_begin(&w);
   if (!(w.bb > 0) || !isfinite(w.bb)) return CF_OK;
+  if (watches_mean(v)) watch_mean(&w, o->tolerance);
   const double enough = o->tolerance * o->tolerance * w.bb, start = w.rr;
   for (double before = INFINITY; w.rr <= 0.25 * before; cf_varied_begin(&w)) {
     before = w.rr;
@@ -170,8 +187,12 @@ static cf_status cycle(cf_varied *v, const cf_cell b, const cf_solve_options *o,
     cf_varied_run_cycles(&w, o->max_iterations, &report->iterations);
     if (w.rr <= enough || !(w.rr <= w.target)) break;
   }
-  if (w.kept && !(w.rr <= HARM * start)) cf_varied_copy(v, v->best, x);
-  restore_means(v, x);
+  if (w.kept && !(w.rr <= HARM * start))
+    cf_varied_copy(v, v->best, x);
+  else if (watches_mean(v))
+    cf_pockets_restore_mean(&v->pockets, &v->level[0], w.x_sum, x);
+  else
+    restore_means(v, x);
   cf_varied_sums s = {w.rr, w.bb, w.xx};
   *done = s.first <= enough && tells(v, &s, enough);
   if (s.first <= enough && !*done && v->apart) {
@@ -202,6 +223,7 @@ static cf_status gradients(cf_varied *v, const cf_cell b, const cf_solve_options
 static cf_status go_on(cf_varied *v, const cf_cell b, const cf_solve_options *o, const cf_cell x,
                        cf_solve_report *report) {
   const bool apart = v->apart;
+  if (watches_mean(v)) cf_pockets_remove_means(&v->pockets, &v->level[0], b);
   if (apart) CF_TRY(cf_varied_make_plain(v));
   v->apart = false;
   const cf_status s = gradients(v, b, o, x, report);
@@ -213,8 +235,10 @@ cf_status cf_varied_solve(cf_varied *v, const cf_cell b, const cf_solve_options 
                           cf_solve_report *report) {
   if (v->sweeps) return cf_varied_sweep(v, b, o, x, report);
   const cf_coupled *l = &v->level[0];
-  cf_pockets_remove_means(&v->pockets, l, b);
-  cf_pockets_keep_means(&v->pockets, l, x);
+  if (!watches_mean(v)) {
+    cf_pockets_remove_means(&v->pockets, l, b);
+    cf_pockets_keep_means(&v->pockets, l, x);
+  }
   CF_TRY(find_loose(v));
   if (has_loose(v)) {
     cf_pockets_ask_means(&v->loose, l, v->alpha_number, b);

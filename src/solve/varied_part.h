@@ -118,12 +118,12 @@ double cf_varied_advance(const cf_varied *v, double a, double scale, cf_cell x);
 /* Whether the present equation is one for them. */
 bool cf_varied_can_cycle(const cf_varied *v);
 
-/* Their state: r is in units of 1/unit; the squares of r, of b, of x when they were formed last; what the first is to be. What x was
- * before it changed is in v->best if it has been kept there. */
+/* Their state: r is in units of 1/unit; the squares of r, of b, of x when they were formed last, and on a finest level apart by
+ * colour the sums of b and x; what the first is to be. What x was before it changed is in v->best if it has been kept there. */
 typedef struct cf_cycling {
   const cf_varied *v;
   cf_cell x, b;
-  double unit, rr, bb, xx, target;
+  double unit, rr, bb, xx, b_sum, x_sum, target;
   bool kept;
 } cf_cycling;
 
