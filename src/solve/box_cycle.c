@@ -253,10 +253,10 @@ static void run_update(const cf_box_solver *f, cf_pass *p, cf_box_iteration *it)
 
 void cf_box_form(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b, const cf_cell x,
                  cf_box_iteration *it) {
-  if (f->varied != NULL)
-    cf_varied_set_ghosts(f->varied, x);
-  else
+  if (f->varied == NULL)
     cf_halo_fill(&A->grid.box, &A->outside, 1, -1, x.at);
+  else if (f->level[0].has_seam) /* no other ghosts are looked at */
+    cf_varied_set_ghosts(f->varied, x);
   cf_pass p = pass_on_finest(f, b, x);
   p.scale = it->scale;
   p.shift = it->shift;

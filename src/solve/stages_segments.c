@@ -232,15 +232,15 @@ CF_KERNEL void prolong_row(const int dim, const cf_pass *p, const cf_strip *t, c
       __builtin_prefetch(coarse + (cf_segment_at(ahead.at) - ahead.row));
     cf_fetch_segment(s, &ahead);
     ++ahead.at;
-    for (int parity = 0; parity < 2; ++parity) {
-      float *to = e + at + parity * odd;
-      cf_sixteen taken;
-      if (q->table < CF_REGULAR_TABLES)
-        cf_sixteen_linear(dim, &x, at - row, table, parity, &taken);
-      else
-        cf_sixteen_spread(dim, &x, at - row, table, parity, &taken);
-      if (q->table >= CF_INNER_TABLES) cf_sixteen_transferred(table, parity * CF_SEGMENT, &taken);
-      CF_INTO_SIXTEEN(to, CF_SIXTEEN_OF(to) + taken);
+    cf_sixteen taken[2];
+    if (q->table < CF_REGULAR_TABLES)
+      cf_sixteen_linear(dim, &x, at - row, table, taken);
+    else
+      cf_sixteen_spread(dim, &x, at - row, table, taken);
+    for (int half = 0; half < 2; ++half) {
+      float *to = e + at + half * odd;
+      cf_sixteen_transferred(table, half * CF_SEGMENT, &taken[half]);
+      CF_INTO_SIXTEEN(to, CF_SIXTEEN_OF(to) + taken[half]);
     }
   }
   for (; ahead.at < ahead.end; ++ahead.at) cf_fetch_segment(s, &ahead);

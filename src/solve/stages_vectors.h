@@ -12,6 +12,8 @@
 #define CF_INTO_SIXTEEN(p, v) (*(cf_sixteen_floats *)(p) = (v))
 #define CF_FLOATS_OF(ints)    __builtin_convertvector(ints, cf_sixteen)
 
+#define CF_SHARES_OF(bytes)   ((1.0f / 256) * CF_FLOATS_OF(CF_SIXTEEN_OF_BYTES(bytes)))
+
 /* Where the segments of a strip's row (j, k) begin in a list. */
 CF_KERNEL const cf_segment *cf_segments_from(const cf_segment_list *l, const cf_split *s, const cf_strip *t,
                                              const int j, const int k) {
@@ -210,25 +212,27 @@ CF_KERNEL void cf_sixteen_mixed(const int dim, const cf_mixture *x, const ptrdif
   if (dim == 3) *out += (1 - y) * z * CF_SIXTEEN_OF(x->z + m) + y * z * CF_SIXTEEN_OF(x->yz + m);
 }
 
-/* What a half of a regular segment takes from coarse cells from m on: linear along each axis in turn. */
+/* What both halves of a regular segment take from coarse cells from m on: linear along each axis in turn. */
 CF_KERNEL void cf_sixteen_linear(const int dim, const cf_mixture *x, const ptrdiff_t m,
-                                 const cf_segment_table *t, const int parity, cf_sixteen *out) {
-  const unsigned char *weight = t->weight[0] + parity * CF_SEGMENT;
-  cf_sixteen own, next;
+                                 const cf_segment_table *t, cf_sixteen out[2]) {
+  cf_sixteen below, own, above;
+  cf_sixteen_mixed(dim, x, m - 1, &below);
   cf_sixteen_mixed(dim, x, m, &own);
-  cf_sixteen_mixed(dim, x, m + (parity ? 1 : -1), &next);
-  *out = own + (1.0f / 256) * CF_FLOATS_OF(CF_SIXTEEN_OF_BYTES(weight)) * (next - own);
+  cf_sixteen_mixed(dim, x, m + 1, &above);
+  out[0] = own + CF_SHARES_OF(t->weight[0]) * (below - own);
+  out[1] = own + CF_SHARES_OF(t->weight[0] + CF_SEGMENT) * (above - own);
 }
 
-/* What any other one takes: from one neighbour an axis. */
+/* What those of any other one take: from one neighbour an axis. */
 CF_KERNEL void cf_sixteen_spread(const int dim, const cf_mixture *x, const ptrdiff_t m,
-                                 const cf_segment_table *t, const int parity, cf_sixteen *out) {
+                                 const cf_segment_table *t, cf_sixteen out[2]) {
   const cf_sixteen own = CF_SIXTEEN_OF(x->own + m);
-  const float *next[3] = {x->own + (parity ? 1 : -1), x->y, x->z};
-  *out = own;
-  for (int a = 0; a < dim; ++a) {
-    const unsigned char *weight = t->weight[a] + parity * CF_SEGMENT;
-    *out += (1.0f / 256) * CF_FLOATS_OF(CF_SIXTEEN_OF_BYTES(weight)) * (CF_SIXTEEN_OF(next[a] + m) - own);
+  for (int half = 0; half < 2; ++half) {
+    const float *next[3] = {x->own + (half ? 1 : -1), x->y, x->z};
+    out[half] = own;
+    for (int a = 0; a < dim; ++a)
+      out[half] +=
+          CF_SHARES_OF(t->weight[a] + half * CF_SEGMENT) * (CF_SIXTEEN_OF(next[a] + m) - own);
   }
 }
 
