@@ -42,8 +42,10 @@ static void take_transfers(const cf_box_solver *f) {
   const cf_segments *g = &f->segments;
 #pragma omp parallel for schedule(static) num_threads(s->threads)
   for (int k = g->low[2]; k < g->high[2]; ++k)
-    for (int j = g->low[1]; j < g->high[1]; ++j) CF_FOR_ROW_SEGMENTS(g, &g->edges, s, j, k, q) {
+    for (int j = g->low[1]; j < g->high[1]; ++j)
+      CF_FOR_ROW_SEGMENTS (g, &g->edges, s, j, k, q) {
         cf_segment_table *t = &g->table[q->table];
+        if (q->table < CF_REGULAR_TABLES) continue;
         const ptrdiff_t p = cf_box_at(&l->box, cf_segment_cell(s, q, j, k), j, k);
         for (int i = t->low; i < t->high; ++i) {
           const int lane = cf_lane_of(i);
@@ -121,7 +123,7 @@ double cf_box_sample_around(const cf_box_solver *f, const cf_cell b, const cf_ce
   for (int k = g->low[2]; k < g->high[2]; ++k)
     for (int j = g->low[1]; j < g->high[1]; ++j) {
       if (g->number[cf_segments_row(s, j, k)] % step != 0) continue;
-      CF_FOR_ROW_SEGMENTS(g, &g->all, s, j, k, q) {
+      CF_FOR_ROW_SEGMENTS (g, &g->all, s, j, k, q) {
         const cf_segment_table *t = &g->table[q->table];
         const ptrdiff_t p = cf_box_at(&s->plain->box, cf_segment_cell(s, q, j, k), j, k);
         for (int i = t->low; i < t->high; ++i)

@@ -141,18 +141,19 @@ static uint64_t before(const finding *f, const int j, const int k, const int wor
   return bits;
 }
 
-static cf_status make_segment(const finding *f, const int j, const int k, const int from,
-                              const bool is_regular, const bool is_first) {
+/* What is known of a block. NEAR: it is not regular, or the one before or behind it is not. */
+enum { REGULAR = 1, NEAR = 2, FIRST = 4 };
+
+static cf_status make_segment(const finding *f, const int j, const int k, const int from, const int block) {
   const cf_split *s = f->s;
   cf_segments *g = f->g;
   const ptrdiff_t place = (j * s->row + k * s->plane + from) / CF_SEGMENT;
-  const int bits = ((j + k) & 1 ? CF_PLACE_PARITY : 0) | (is_first ? CF_PLACE_FIRST : 0);
+  const int bits = ((j + k) & 1 ? CF_PLACE_PARITY : 0) | (block & FIRST ? CF_PLACE_FIRST : 0);
   const cf_segment q = {.place = (uint32_t)(4 * place + bits),
-                        .table = is_regular ? regular_table(s, from, j, k) : (int32_t)g->tables};
+                        .table = block & REGULAR ? regular_table(s, from, j, k) : (int32_t)g->tables};
+  g->tables += block & REGULAR ? 0 : 1;
   CF_TRY(append(&g->all, q));
-  if (is_regular) return CF_OK;
-  ++g->tables;
-  return append(&g->edges, q);
+  return block & NEAR ? append(&g->edges, q) : CF_OK;
 }
 
 /* Pieces of a row up to that of element `from` begin where the lists are now. */
@@ -170,11 +171,14 @@ static cf_status make_row(const finding *f, const int j, const int k) {
   for (int word = 0; word < f->words; ++word) {
     const uint64_t some = f->some[row * f->words + word];
     if (some == 0) continue;
-    const uint64_t regular = regular_of(f, j, k, word), later = before(f, j, k, word);
+    const uint64_t regular = regular_of(f, j, k, word), later = before(f, j, k, word), own = some & ~regular;
+    const uint64_t near = own | own << 1 | own >> 1; /* not from word to word */
     for (uint64_t bits = some; bits != 0; bits &= bits - 1) {
       const int bit = __builtin_ctzll(bits), from = (word * BITS + bit) * CF_SEGMENT;
       begin_pieces(g, row, f->s->dim == 3 ? 0 : from, &begun);
-      CF_TRY(make_segment(f, j, k, from, regular >> bit & 1, !(later >> bit & 1)));
+      CF_TRY(make_segment(f, j, k, from,
+                          (regular >> bit & 1 ? REGULAR : 0) | (near >> bit & 1 ? NEAR : 0) |
+                              (later >> bit & 1 ? 0 : FIRST)));
     }
   }
   begin_pieces(g, row, INT_MAX, &begun);
@@ -306,8 +310,11 @@ static void fill_tables(const finding *f) {
   fill_regular_tables(f);
 #pragma omp parallel for schedule(static) num_threads(s->threads) reduction(| : any)
   for (int k = g->low[2]; k < g->high[2]; ++k)
-    for (int j = g->low[1]; j < g->high[1]; ++j) CF_FOR_ROW_SEGMENTS(g, &g->edges, s, j, k, q)
-  any |= fill_table(f, cf_segment_cell(s, q, j, k), j, k, &g->table[q->table]);
+    for (int j = g->low[1]; j < g->high[1]; ++j) {
+      CF_FOR_ROW_SEGMENTS (g, &g->edges, s, j, k, q)
+        if (q->table >= CF_REGULAR_TABLES)
+          any |= fill_table(f, cf_segment_cell(s, q, j, k), j, k, &g->table[q->table]);
+    }
   g->any_held = any != 0;
 }
 
@@ -356,7 +363,7 @@ void cf_segments_clear(const cf_segments *g, const cf_split *s) {
 
 cf_segment_table *cf_segments_table_at(const cf_segments *g, const cf_split *s, const int at[3]) {
   const cf_segment *found = NULL;
-  CF_FOR_ROW_SEGMENTS(g, &g->all, s, at[1], at[2], q)
-  if (cf_segment_cell(s, q, at[1], at[2]) == at[0] / BLOCK * BLOCK) found = q;
+  CF_FOR_ROW_SEGMENTS (g, &g->all, s, at[1], at[2], q)
+    if (cf_segment_cell(s, q, at[1], at[2]) == at[0] / BLOCK * BLOCK) found = q;
   return &g->table[found->table];
 }

@@ -10,8 +10,9 @@
  *
  * What differs from cell to cell stands in tables, one for a segment: 1/diagonal, which faces are open, and how the cells
  * take part in the transfers. Segments whose cells are all inside, as are all around them, share a table with others of
- * their kind: what walls of the box they meet tells all about them. Any other one has its own, and stands in a second list
- * as well, that of the edges. So a ball reads tables at the ends of its rows only.
+ * their kind: what walls of the box they meet tells all about them. Any other one has its own, so a ball reads tables at the
+ * ends of its rows only. Those and the ones beside them in the row stand in a second list as well, that of the edges: where
+ * the coarse correction is not as good as elsewhere. Without their neighbours smaller balls take a cycle more.
  *
  * e and r are 0 where there is no cell inside, hence sums over neighbours need no asking for faces; only differences do.
  *
@@ -80,7 +81,7 @@ typedef struct cf_segments {
   ptrdiff_t *number;     /* of row j + n[1] k among those that have segments */
   ptrdiff_t tables, tables_room;
   cf_segment_table *table;
-  bool any_held; /* some known value holds a cell of an edge */
+  bool any_held; /* some known value holds a cell of a segment with a table of its own */
 } cf_segments;
 
 /* Makes segments for the cells inside of r, with the coefficients that s has been given and known values on walls of the

@@ -23,7 +23,7 @@ CF_KERNEL void relax(const int dim, const int way, const cf_split *s, const cf_s
                      const cf_strip *t, const int colour, const float omega) {
   const cf_ground g = cf_ground_of(dim, s);
   const float keep = 1 - omega;
-  CF_FOR_SEGMENTS(list, s, t, q) {
+  CF_FOR_SEGMENTS (list, s, t, q) {
     const cf_sixteen_cells h = cf_cells_of(&g, q, colour);
     cf_sixteen sum = CF_SIXTEEN_OF(h.r), around;
     if (way != FIRST) {
@@ -45,7 +45,7 @@ CF_KERNEL void last(const int dim, const cf_pass *p, const cf_strip *t, const fl
   CF_FOR_ROWS(j, t) {
     cf_sixteen products = {0};
     if (!cf_has_segments(s, t, j)) continue;
-    CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, t->k, q) {
+    CF_FOR_SEGMENTS_OF (&s->segments->all, s, t, j, t->k, q) {
       const cf_sixteen_cells h = cf_cells_of(&g, q, 1);
       cf_sixteen applied, diagonal;
       cf_sixteen_applied(dim, &h, &applied);
@@ -115,7 +115,7 @@ CF_KERNEL void update_x(const cf_pass *p, const cf_strip *t, const int j, cf_eig
   cf_real *x = p->x + cf_box_at(&s->plain->box, 0, j, t->k);
   const bool lifts = p->sums_of_x || p->lift != 0;
   cf_ahead ahead = cf_ahead_of(s, t, j);
-  CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, t->k, q) {
+  CF_FOR_SEGMENTS_OF (&s->segments->all, s, t, j, t->k, q) {
     const cf_segment_table *table = &s->segments->table[q->table];
     const float *e = s->e + cf_segment_at(q);
     const ptrdiff_t i = 2 * (cf_segment_at(q) - row);
@@ -134,7 +134,7 @@ CF_KERNEL void restart(const int dim, const cf_pass *p, const cf_strip *t, const
   const cf_ground g = cf_ground_of(dim, s);
   const float step = (float)p->step;
   cf_sixteen all = {0}, change = {0};
-  CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, t->k, q) {
+  CF_FOR_SEGMENTS_OF (&s->segments->all, s, t, j, t->k, q) {
     const cf_sixteen_cells h = cf_cells_of(&g, q, 0), black = cf_cells_of(&g, q, 1);
     cf_sixteen applied;
     cf_sixteen_applied(dim, &h, &applied);
@@ -170,7 +170,7 @@ CF_KERNEL void gather(const int dim, const cf_pass *p, const cf_strip *t, const 
   const cf_split *s = p->at;
   const cf_ground g = cf_ground_of(dim, s);
   const ptrdiff_t row = j * s->row + k * s->plane;
-  CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, k, q) {
+  CF_FOR_SEGMENTS_OF (&s->segments->all, s, t, j, k, q) {
     const cf_sixteen_cells red = cf_cells_of(&g, q, 0);
     const int m = (int)(cf_segment_at(q) - row);
     cf_sixteen around, diagonal;
@@ -225,7 +225,7 @@ CF_KERNEL void prolong_row(const int dim, const cf_pass *p, const cf_strip *t, c
   cf_ahead ahead = cf_ahead_of(s, t, j);
   const float *coarse = coarse_ahead(dim, p, t, j);
   float *e = s->e;
-  CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, t->k, q) {
+  CF_FOR_SEGMENTS_OF (&s->segments->all, s, t, j, t->k, q) {
     const cf_segment_table *table = &s->segments->table[q->table];
     const ptrdiff_t at = cf_segment_at(q);
     if (coarse != NULL && ahead.at < ahead.end)

@@ -73,7 +73,7 @@ CF_KERNEL void form_row(const int dim, const cf_pass *p, const cf_strip *t, cons
                .alpha = p->alpha,
                .coupling = p->beta * s->plain->axis[0].lo1[1]};
   cf_ahead ahead = cf_ahead_of(s, t, j);
-  CF_FOR_SEGMENTS_OF(&s->segments->all, s, t, j, t->k, q) {
+  CF_FOR_SEGMENTS_OF (&s->segments->all, s, t, j, t->k, q) {
     const cf_segment_table *table = &s->segments->table[q->table];
     const int from = 2 * (int)(cf_segment_at(q) - row), n = CF_MIN(CF_SEGMENT_CELLS, s->n[0] - from);
     float *r = s->r + cf_segment_at(q);

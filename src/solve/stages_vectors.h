@@ -12,7 +12,7 @@
 #define CF_INTO_SIXTEEN(p, v) (*(cf_sixteen_floats *)(p) = (v))
 #define CF_FLOATS_OF(ints)    __builtin_convertvector(ints, cf_sixteen)
 
-#define CF_SHARES_OF(bytes)   ((1.0f / 256) * CF_FLOATS_OF(CF_SIXTEEN_OF_BYTES(bytes)))
+#define CF_SHARES_OF(bytes) ((1.0f / 256) * CF_FLOATS_OF(CF_SIXTEEN_OF_BYTES(bytes)))
 
 /* Where the segments of a strip's row (j, k) begin in a list. */
 CF_KERNEL const cf_segment *cf_segments_from(const cf_segment_list *l, const cf_split *s, const cf_strip *t,
@@ -231,8 +231,7 @@ CF_KERNEL void cf_sixteen_spread(const int dim, const cf_mixture *x, const ptrdi
     const float *next[3] = {x->own + (half ? 1 : -1), x->y, x->z};
     out[half] = own;
     for (int a = 0; a < dim; ++a)
-      out[half] +=
-          CF_SHARES_OF(t->weight[a] + half * CF_SEGMENT) * (CF_SIXTEEN_OF(next[a] + m) - own);
+      out[half] += CF_SHARES_OF(t->weight[a] + half * CF_SEGMENT) * (CF_SIXTEEN_OF(next[a] + m) - own);
   }
 }
 
