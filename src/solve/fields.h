@@ -26,7 +26,7 @@
 struct cf_varied;
 
 /* Halves of rows that a thread has room for. */
-#define CF_FIELDS_LINES 12
+#define CF_FIELDS_LINES 14
 
 typedef struct cf_fields {
   const struct cf_varied *of; /* whose equation it is; NULL: not made yet */
@@ -39,9 +39,9 @@ typedef struct cf_fields {
   ptrdiff_t sums;
   bool is_even;   /* `fixed` is the same everywhere: one row of it stands for all */
   bool is_gentle; /* alpha holds some cells so much that they must not be over-relaxed */
-  double
-      jacobi; /* the most that couplings have of a cell's diagonal: no wave is damped less by Jacobi's iteration */
-  bool alone; /* half sweeps do without a level below */
+  double jacobi; /* the most that couplings have of a diagonal: Jacobi's iteration damps every wave so much */
+  double radius; /* the same of a wave, which sees more cells than one */
+  bool alone;    /* half sweeps do without a level below */
 } cf_fields;
 
 /* Whether a level has the extents for it. */

@@ -23,7 +23,7 @@
 #define PASS_GAIN 1e-4
 #define LEAST     8
 #define MOST      36
-#define MARGIN    0.7
+#define MARGIN    1.0
 /* r is to be within such a factor of 1. */
 #define FAR_OFF 1e4
 
@@ -126,8 +126,8 @@ cf_varied_sums cf_fields_form(const cf_varied *v, const cf_cell x, const cf_cell
 /* Half sweeps that damp all errors alike (Golub and Varga 1961), as many as are to bring r where it is to be, or half the way
  * there: single precision does not go further at once. The first one is done. */
 static void push_half_sweeps(const cf_cycling *w, cf_pass *p, double *last) {
-  const double J2 = w->v->fields.jacobi * w->v->fields.jacobi;
-  const double per_sweep = w->v->fields.jacobi / (1 + sqrt(1 - J2));
+  const double J = w->v->fields.radius, J2 = J * J;
+  const double per_sweep = J / (1 + sqrt(1 - J2));
   double gain = MARGIN * sqrt(w->target / w->rr), omega = 1;
   if (gain < PASS_GAIN) gain = sqrt(gain);
   const int wanted = (int)ceil(log(gain / 2) / log(CF_MAX(per_sweep, 1e-12)));

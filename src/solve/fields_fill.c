@@ -15,6 +15,11 @@
 /* The diagonals are scaled by what a sample tells of them: some may be so many times what was thought. */
 #define FAR_ABOVE 16.0f
 
+/* Cells of a row, and all rows of a coarse one, that are a block: no wave sees less. But a block of few strong cells is not to be
+ * taken for a weak one: its mean counts up to so many times the least cell. */
+#define BLOCK  16
+#define SPREAD 1.5f
+
 /* --- the finest level --------------------------------------------------------------------------------- */
 
 CF_CLONES static void part(const int pairs, const float *line, float *even, float *odd) {
@@ -31,22 +36,35 @@ CF_CLONES static void add_pairs(const int n, const float *fine, float *to) {
   for (int m = 0; m < n; ++m) to[m] = to[m] + fine[2 * m] + fine[2 * m + 1];
 }
 
-/* The least share of what is no coupling in a diagonal, and the least 1/diagonal. */
+/* The least share of what is no coupling in a diagonal, of a cell and of a block of cells on average; and the least 1/diagonal. */
 typedef struct least {
-  float share, inverse;
+  float share, of_block, inverse;
 } least;
 
-/* free += held. */
-CF_CLONES static least fix(const int n, const float *held, const float *inverse, float *free) {
+/* free += held; shares[i] += what cell i has. */
+CF_CLONES static least fix(const int n, const float *held, const float *inverse, float *free, float *shares) {
   float share = 1, all = INFINITY;
 #pragma omp simd reduction(min : share, all)
   for (int i = 0; i < n; ++i) {
     const float fixed = free[i] + held[i], here = fixed * inverse[i];
     free[i] = fixed;
+    shares[i] += here;
     share = here < share ? here : share;
     all = inverse[i] < all ? inverse[i] : all;
   }
-  return (least){share, all};
+  return (least){share, 1, all};
+}
+
+/* The least mean of BLOCK cells in a row; the last ones may be among those before them too. */
+CF_CLONES static float least_mean(const int n, const int rows, const float *shares) {
+  float all = 1;
+  for (int from = 0; from < n; from += BLOCK) {
+    const int low = CF_MAX(CF_MIN(from, n - BLOCK), 0), high = CF_MIN(low + BLOCK, n);
+    float sum = 0;
+    for (int i = low; i < high; ++i) sum += shares[i];
+    all = CF_MIN(all, sum / (float)(rows * (high - low)));
+  }
+  return all;
 }
 
 static int fill_row(const cf_varied *v, const cf_coefficients *c, const int j, const int k, float *line,
@@ -63,8 +81,8 @@ static int fill_row(const cf_varied *v, const cf_coefficients *c, const int j, c
   part(pairs, row.inverse, f->inverse + at, f->inverse + at + s->odd);
   add_pairs(pairs, row.free, coarse->free + coarse_row);
   add_pairs(pairs, row.held, coarse->held + coarse_row);
-  const least here = fix(n, row.held, row.inverse, row.free);
-  *of = (least){CF_MIN(of->share, here.share), CF_MIN(of->inverse, here.inverse)};
+  const least here = fix(n, row.held, row.inverse, row.free, line + 6 * step);
+  *of = (least){CF_MIN(of->share, here.share), of->of_block, CF_MIN(of->inverse, here.inverse)};
   if (!f->is_even) part(pairs, row.free, f->fixed + at, f->fixed + at + s->odd);
   if (s->wraps[0]) f->c[0][at + s->half[0]] = f->c[0][at];
   return flags;
@@ -88,25 +106,29 @@ bool cf_fields_fill(cf_varied *v, const cf_coefficients *c) {
   const cf_coupled *coarse = &v->level[1];
   const int deep = s->dim == 3, pairs = s->n[0] / 2;
   int flags = 0;
-  float share = 1, inverse = INFINITY;
+  float share = 1, of_block = 1, inverse = INFINITY;
   f->is_even = fill_even(v, c);
 #pragma omp parallel for schedule(static) num_threads(cf_coupled_threads(coarse)) reduction(|        \
                                                                                             : flags) \
     reduction(min                                                                                    \
-              : share, inverse)
+              : share, of_block, inverse)
   for (ptrdiff_t q = 0; q < coarse->rows; ++q)
     CF_TILE_ROWS (coarse, q, J, K) {
       float *line = f->line + LINES * (ptrdiff_t)s->width * omp_get_thread_num();
       const ptrdiff_t to = cf_box_at(&coarse->box, 0, J, K);
-      least of = {share, inverse};
+      float *shares = line + 12 * (ptrdiff_t)s->width;
+      least of = {share, of_block, inverse};
+      memset(shares, 0, (size_t)s->n[0] * sizeof *shares);
       memset(coarse->free + to, 0, (size_t)pairs * sizeof(float));
       memset(coarse->held + to, 0, (size_t)pairs * sizeof(float));
       for (int k = K << deep; k < (K + 1) << deep; ++k)
         for (int j = 2 * J; j < 2 * J + 2; ++j) flags |= fill_row(v, c, j, k, line, to, &of);
       for (int m = 0; m < pairs; ++m) coarse->held[to + m] *= 0.5f;
       share = of.share, inverse = of.inverse;
+      of_block = CF_MIN(of_block, least_mean(s->n[0], 2 << deep, shares));
     }
   f->jacobi = 1 - (double)CF_MAX(share, 0);
+  f->radius = 1 - (double)CF_MAX(CF_MIN(of_block, SPREAD * share), 0);
   return cf_open_take(v, flags) && inverse > 1 / FAR_ABOVE;
 }
 

@@ -286,7 +286,7 @@ static cf_status set_fields(cf_varied *v, const cf_coefficients *c, const reach 
   cf_fields *f = &v->fields;
   v->apart = true;
   v->sweeps = false;
-  f->alone = f->jacobi <= CF_FIELDS_ALONE;
+  f->alone = f->radius <= CF_FIELDS_ALONE;
   f->is_gentle = l->is_gentle && !f->alone;
   v->depth = f->alone ? 1 : depth_for(v, f->jacobi / CF_MAX(1 - f->jacobi, 1e-300));
   v->excess[0] = v->excess[1] = 0;

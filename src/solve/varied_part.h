@@ -139,7 +139,7 @@ void cf_varied_correct(const cf_varied *v, int at);
 /* --- on a finest level apart by colour (fields_cycle.c) ------------------------------------------------- */
 
 /* Up to this share of couplings in the diagonals half sweeps do there without any cycle. */
-#define CF_FIELDS_ALONE 0.965
+#define CF_FIELDS_ALONE 0.97
 
 /* As above; the coarse correction, half sweeps after it, x and r, and those before the next one unless this is thought to be the
  * last; these alone. */

@@ -196,6 +196,64 @@ static void cycles_tell_the_residual_that_is_true(void **state) {
       }
 }
 
+/* Where alpha holds enough, half sweeps alone: no levels, few passes, the same bits with any number of threads. */
+static void half_sweeps_alone_do_where_alpha_holds(void **state) {
+  (void)state;
+  static const char *const walls[] = {"iii", "oih", "ppp"};
+  for (int w = 0; w < 3; ++w)
+    for (int dim = 2; dim <= 3; ++dim) {
+      solve_setup s[2];
+      for (int t = 0; t < 2; ++t) {
+        solve_case c = random_case(dim, dim == 2 ? 96 : 38, walls[w], dim == 2 ? 0.6 : 0.4);
+        c.threads = 1 + 2 * t;
+        c.alpha_varies = w == 1;
+        cf_solve_report report;
+        case_begin(&c, &s[t]);
+        assert_true(s[t].A->varied->apart && s[t].A->varied->fields.alone);
+        assert_string_equal(cf_helmholtz_method(s[t].A), "sor");
+        OK(cf_helmholtz_solve(s[t].A, s[t].b, &(cf_solve_options){1e-6, 40}, s[t].x, &report));
+        assert_true(report.converged && report.iterations <= 3);
+        BELOW(cf_helmholtz_residual(s[t].A, s[t].x, s[t].b), 1.001e-6);
+        for (ptrdiff_t r = 0; r < cf_box_rows(&s[t].g.box); ++r) {
+          const ptrdiff_t p = cf_box_row(&s[t].g.box, r);
+          assert_memory_equal(s[t].x.at + p, s[0].x.at + p, (size_t)c.n[0] * sizeof(cf_real));
+        }
+      }
+      for (int t = 0; t < 2; ++t) case_end(&s[t]);
+    }
+}
+
+static double mean_of(const cf_box *b, const cf_cell f) {
+  double sum = 0;
+  for (ptrdiff_t r = 0; r < cf_box_rows(b); ++r)
+    for (int i = 0; i < b->n[0]; ++i) sum += (double)f.at[cf_box_row(b, r) + i];
+  return sum / (double)cf_box_cells(b);
+}
+
+/* Where nothing fixes the level of x its mean stays, whether b has a mean, which has no solution, or none. */
+static void a_mean_that_nothing_fixes_stays(void **state) {
+  (void)state;
+  for (int with = 0; with < 2; ++with)
+    for (int m = 0; m < 2; ++m) {
+      const solve_case c = random_case(3, 32, "iip", INFINITY);
+      solve_setup s;
+      cf_solve_report report;
+      case_begin(&c, &s);
+      assert_true(s.A->varied->apart);
+      for (ptrdiff_t r = 0; r < cf_box_rows(&s.g.box); ++r)
+        for (int i = 0; i < c.n[0]; ++i) {
+          s.x.at[cf_box_row(&s.g.box, r) + i] = 7;
+          if (with) s.b.at[cf_box_row(&s.g.box, r) + i] += 3;
+        }
+      OK(cf_helmholtz_solve(s.A, s.b, &(cf_solve_options){m ? 1e-6 : 1e-11, 40}, s.x, &report));
+      assert_true(report.converged);
+      BELOW(cf_helmholtz_residual(s.A, s.x, s.b), m ? 1.001e-6 : 1.001e-11);
+      BELOW(fabs(mean_of(&s.g.box, s.x) - 7), 1e-12);
+      BELOW(fabs(mean_of(&s.g.box, s.b)), 1e-9);
+      case_end(&s);
+    }
+}
+
 /* A plane of closed faces; then none again, with the levels that never had any. */
 static void closed_faces_are_seen_and_forgotten(void **state) {
   (void)state;
@@ -225,6 +283,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(threads_do_not_change_a_bit),
       cmocka_unit_test(cycles_tell_the_residual_that_is_true),
+      cmocka_unit_test(half_sweeps_alone_do_where_alpha_holds),
+      cmocka_unit_test(a_mean_that_nothing_fixes_stays),
       cmocka_unit_test(closed_faces_are_seen_and_forgotten),
       cmocka_unit_test(rows_make_the_levels_that_cells_make),
   };
