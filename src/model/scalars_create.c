@@ -17,6 +17,14 @@
 /* What a scheme takes at once: 8/7 of a field in space for all levels of multigrid. */
 static double levels_of(const cf_scene *scene) { return scene->dim == 3 ? 8.0 / 7 : 4.0 / 3; }
 
+/* What the solver takes of memory for coefficients that are fields: the four fields of conjugate gradients, and numbers in single
+ * precision, so many a cell at 128^3 and 1400^2: levels of couplings, the finest one apart by colour as well, and clusters where
+ * k is far from alike (solve/clusters.h). */
+static double solver_of_fields(const cf_scene *scene, const bool k_varies) {
+  const double levels = scene->dim == 3 ? 28 : 20, clusters = scene->dim == 3 ? 10 : 13;
+  return 4 + (levels + (k_varies ? clusters : 0)) * 4.0 / sizeof(cf_real);
+}
+
 /* Whether a source of the kind acts on a field. */
 static bool has_source(const cf_scene *scene, const char *name, const bool held) {
   for (int i = 0; i < scene->sources.count; ++i)
@@ -53,7 +61,7 @@ static double fields_under(const cf_scene *scene, const int field, const cf_plan
   if (plan->scheme == CF_DIFFUSE_WAVE) fields += 2 + dim;
   if (!implicit) return fields;
   const bool varied = beta || held || c_varies || scene->obstacles.count > 0;
-  return fields + (varied ? 4 + (dim + 3) * levels_of(scene) : 2 * levels_of(scene) * in_single);
+  return fields + (varied ? solver_of_fields(scene, beta) : 2 * levels_of(scene) * in_single);
 }
 
 /* The same before any grid is there: with the step that diffusion alone would ask for, or with the dearest scheme.
