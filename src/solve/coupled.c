@@ -116,6 +116,15 @@ void cf_coupled_follow_tiles(cf_coupled *l) {
   find_rows(l);
 }
 
+ptrdiff_t cf_part_cells(const cf_part *w) {
+  ptrdiff_t cells = 0;
+  for (ptrdiff_t v = 0; v < w->rows; ++v)
+    CF_TILE_RUNS (w, v, run)
+      cells += (ptrdiff_t)(w->row[v].j_end - w->row[v].j) * (w->row[v].k_end - w->row[v].k) *
+               (run->high - run->low);
+  return cells;
+}
+
 void cf_coupled_place(const cf_box *b, ptrdiff_t p, int at[3]) {
   at[2] = b->dim == 3 ? (int)(p / b->stride[2]) : 0;
   p -= at[2] * b->stride[2];

@@ -98,6 +98,8 @@ static inline bool cf_part_has(const cf_part *w, const int at[3]) {
   return w->tiles == NULL || cf_tiles_has_cell(w->tiles, at[0], at[1], at[2]);
 }
 
+ptrdiff_t cf_part_cells(const cf_part *w);
+
 /* From c, free and held: inverse, seams, and the band, where a part has been made anew. CF_NO_MEMORY. */
 cf_status cf_coupled_finish(cf_coupled *l, const cf_part *w);
 

@@ -163,19 +163,11 @@ static void add_cells(groups *s) {
     }
 }
 
-static ptrdiff_t cells_of(const cf_coupled *l) {
-  ptrdiff_t cells = 0;
-  for (ptrdiff_t v = 0; v < l->rows; ++v)
-    CF_TILE_RUNS (l, v, run)
-      cells += (ptrdiff_t)(l->row[v].j_end - l->row[v].j) * (l->row[v].k_end - l->row[v].k) *
-               (run->high - run->low);
-  return cells;
-}
-
 /* Each node that is not held fast, by itself. */
 static cf_status groups_begin(groups *s) {
   const cf_coupled *l = s->of.l;
-  const ptrdiff_t most = s->of.of != NULL ? s->of.of->n : cells_of(l);
+  const cf_part all = cf_coupled_all(l);
+  const ptrdiff_t most = s->of.of != NULL ? s->of.of->n : cf_part_cells(&all);
   void *pages;
   s->bytes = (size_t)(s->of.of != NULL ? most : l->box.size) * sizeof *s->group;
   CF_TRY(cf_pages_reserve(&pages, s->bytes, s->of.of != NULL || l->tiles == NULL));

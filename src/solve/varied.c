@@ -203,22 +203,13 @@ bool cf_varied_has(const cf_varied *v, const cf_coefficients *c) {
          (c->region->tiles == NULL || v->level[0].followed == c->region->tiles->updates);
 }
 
-static ptrdiff_t cells_of(const cf_part *w) {
-  ptrdiff_t cells = 0;
-  for (ptrdiff_t v = 0; v < w->rows; ++v)
-    CF_TILE_RUNS (w, v, run)
-      cells += (ptrdiff_t)(w->row[v].j_end - w->row[v].j) * (w->row[v].k_end - w->row[v].k) *
-               (run->high - run->low);
-  return cells;
-}
-
 /* The part of level `at` that is made: all of it, or where its cells can feel what has changed. */
 static cf_status next_part(cf_varied *v, const int at, const bool all, cf_part *w) {
   if (all)
     *w = cf_coupled_all(&v->level[at]);
   else
     CF_TRY(cf_renewal_part(&v->renewal, at, &v->level[at], w));
-  v->renewed += cells_of(w);
+  v->renewed += cf_part_cells(w);
   return CF_OK;
 }
 
