@@ -8,7 +8,7 @@
  *     FIRST        red: e = omega r / d, what a half sweep does to e = 0 (a part of FORM, UPDATE, RESTRICT)
  *     SECOND       black: e = omega (r + neighbours) / d, what the next half sweep does
  *     RED, BLACK   a half sweep of over-relaxed Gauss-Seidel
- *     RED_EDGES, BLACK_EDGES  the same on edge segments (segments.h) alone
+ *     RED_EDGES, BLACK_EDGES  the same on segments at edges (segments.h) alone
  *     LAST         a black half sweep that leaves the residual behind in r
  *     UPDATE       red: r -= A' e; all: x += gain e, and the sum of r^2; then FIRST on the new r
  *     ADD          x += gain e; on levels of fields alone (fields.h)
