@@ -149,6 +149,7 @@ void cf_stage_update(const cf_pass *p, const cf_strip *t, float omega);
 void cf_stage_residual(const cf_split *s, const cf_strip *t);
 
 void cf_stage_form_on_segments(const cf_pass *p, const cf_strip *t);
+void cf_stage_form_on_fields(const cf_pass *p, const cf_strip *t);
 void cf_stage_on_fields(const cf_pass *p, int number, const cf_strip *t, float omega);
 void cf_stage_on_segments(const cf_pass *p, int number, const cf_strip *t, float omega);
 

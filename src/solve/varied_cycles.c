@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fields for coefficients where no face is closed: stationary cycles. One sweep through memory leads from one coarse
+ * Fields for coefficients where no face is closed: stationary cycles, and where the finest level does not lie apart by colour
+ * (fields_cycle.c) what they are made of. One sweep through memory leads from one coarse
  * correction to the next:
  *
  *     e += interpolated correction, half sweeps on r = A e
