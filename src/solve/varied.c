@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Taking coefficients, making levels, and the cycle over them.
+ * Taking coefficients and making levels.
  */
 #include "solve/varied.h"
 
@@ -14,16 +14,10 @@
 #include "solve/setting.h"
 #include "solve/varied_part.h"
 
-/* Full sweeps after the coarse correction below the finest level, where they cost little: in a V-cycle; in a W-cycle. */
-#define COARSE_SWEEPS_V 3
-#define COARSE_SWEEPS_W 1
-/* On a coarsest level that is not eliminated because little is left to smooth there. */
-#define LAST_SWEEPS 4
 /* Elimination may take so much for every cell of the finest level, and so much at all. */
 #define WORK_PER_CELL 100.0
 #define WORK_MOST     3e7
 #define WORK_ASKED    1e9 /* where the caller limits the levels */
-#define OMEGA         1.15f
 
 /* --- memory ------------------------------------------------------------------------------------------- */
 
@@ -187,7 +181,7 @@ static int depth_for(const cf_varied *v, const double stiffness) {
   return depth;
 }
 
-static bool is_eliminated(const cf_varied *v) {
+bool cf_varied_eliminates(const cf_varied *v) {
   const cf_coupled *l = &v->level[v->depth - 1];
   const double most = v->A->wanted > 0 ? WORK_ASKED : WORK_MOST;
   return v->depth == v->levels && cf_band_work(&l->box, l->periodic) <= most;
@@ -231,7 +225,7 @@ static cf_status make_levels(cf_varied *v, const cf_coefficients *c, const bool 
     CF_TRY(cf_coarsen(l, coarse, &w));
     CF_TRY(cf_coupled_find_spans(coarse));
   }
-  return is_eliminated(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;
+  return cf_varied_eliminates(v) ? cf_band_factor(&v->band, &v->level[v->depth - 1]) : CF_OK;
 }
 
 /* What make_levels would have made without this way of its own: level[0], and what is below it again. */
@@ -367,73 +361,4 @@ void cf_varied_add_held(const cf_varied *v, const cf_cell b) {
           const ptrdiff_t p = cf_box_at(&l->box, i, j, k);
           b.at[p] += (cf_real)cf_held_beside(&held, (int[]){i, j, k}, p);
         }
-}
-
-/* --- the cycle ---------------------------------------------------------------------------------------- */
-
-static void solve_last(const cf_varied *v, const int at) {
-  const cf_coupled *l = &v->level[at];
-  if (is_eliminated(v)) {
-    cf_band_solve(&v->band, l);
-    return;
-  }
-  const cf_band_sweeps none = {0, 1};
-  cf_coupled_smooth_first(l, 1, none, false);
-  if (v->careful)
-    cf_coupled_smooth_back(l, 1, none);
-  else
-    cf_coupled_smooth(l, 1, none, at == 0 ? 1 : LAST_SWEEPS);
-}
-
-/* Smoothing in opposite orders and transfers that are each other's transposes: with elimination, or few half sweeps, at
- * the bottom this is symmetric and positive definite, however wrong coarse couplings are. */
-static void careful_cycle(const cf_varied *v, const int at) {
-  const cf_coupled *l = &v->level[at];
-  if (at == v->depth - 1) {
-    solve_last(v, at);
-    return;
-  }
-  cf_coupled_smooth_first(l, 1, v->band_sweeps, true);
-  cf_coupled_restrict_alike(l, &v->level[at + 1]);
-  careful_cycle(v, at + 1);
-  cf_coupled_prolong_alike(&v->level[at + 1], l);
-  cf_coupled_smooth_back(l, 1, v->band_sweeps);
-}
-
-/* Three sweeps on either side, which cost little beside what is below. */
-static void clustered_cycle(const cf_varied *v) {
-  const cf_coupled *l = &v->level[0];
-  const cf_band_sweeps none = {0, 1};
-  cf_coupled_smooth_first(l, 1, none, false);
-  cf_coupled_smooth(l, 1, none, 1);
-  cf_coupled_smooth_again(l, 1);
-  cf_clusters_correct(&v->clusters, l);
-  for (int sweep = 0; sweep < 3; ++sweep) cf_coupled_smooth_back(l, 1, none);
-}
-
-void cf_varied_cycle(const cf_varied *v, const int at) {
-  const cf_coupled *l = &v->level[at], *coarse = l + 1;
-  if (v->clustered) {
-    clustered_cycle(v);
-    return;
-  }
-  if (v->careful) {
-    careful_cycle(v, at);
-    return;
-  }
-  if (at == v->depth - 1) {
-    solve_last(v, at);
-    return;
-  }
-  cf_coupled_smooth_first(l, OMEGA, v->band_sweeps, true);
-  cf_coupled_restrict(l, coarse);
-  cf_varied_cycle(v, at + 1);
-  if (v->thorough && at + 1 < v->depth - 1) {
-    cf_coupled_prolong(coarse, l);
-    cf_coupled_smooth_again(l, OMEGA);
-    cf_coupled_restrict(l, coarse);
-    cf_varied_cycle(v, at + 1);
-  }
-  cf_coupled_prolong(coarse, l);
-  cf_coupled_smooth(l, OMEGA, v->band_sweeps, at == 0 ? 1 : v->thorough ? COARSE_SWEEPS_W : COARSE_SWEEPS_V);
 }

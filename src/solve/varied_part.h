@@ -66,7 +66,10 @@ cf_status cf_varied_fill(cf_varied *v, const cf_coefficients *c, const cf_part *
 /* Fills level[0] where the finest level is apart by colour, for what works on couplings in natural order. CF_NO_MEMORY. */
 cf_status cf_varied_make_plain(cf_varied *v);
 
-/* --- the cycle and what it works on (varied.c) ---------------------------------------------------------- */
+/* --- the cycle (varied_precondition.c) and what it works on --------------------------------------------- */
+
+/* Whether the last level is eliminated (band.h). */
+bool cf_varied_eliminates(const cf_varied *v);
 
 /* level[at].e = one V-cycle on level[at].r. */
 void cf_varied_cycle(const cf_varied *v, int at);
