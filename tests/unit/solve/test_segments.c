@@ -59,7 +59,7 @@ static void check_cell(const scene *s, const cf_segment_table *t, const int from
   const ptrdiff_t p = cf_box_at(box, at[0], at[1], at[2]);
   int faces = CF_FACES_INSIDE | CF_FACES_TRANSFER, open = 0, held = 0;
   for (int v = 0; v < 2 * box->dim; ++v) {
-    const int a = v / 2, n = box->n[a], next = at[a] + (v % 2 ? 1 : -1), wall = s->walls.kind[a][v % 2];
+    const int a = v / 2, n = box->n[a], next = at[a] + (v % 2 ? 1 : -1), wall = (int)s->walls.kind[a][v % 2];
     const bool is_end = (next < 0 || next >= n) && wall != CF_WALL_PERIODIC;
     const int kind = is_end ? -1 : s->region->kind[p + ((next + n) % n - at[a]) * box->stride[a]];
     faces |= kind == CF_CELL_INSIDE ? 1 << v : 0;
