@@ -32,49 +32,44 @@
 
 /* --- passes ------------------------------------------------------------------------------------------- */
 
-static void push(cf_pass *p, const cf_pass_stage stage, const double omega) {
-  p->omega[p->count] = (float)omega;
-  p->stage[p->count++] = stage;
-}
-
 /* After FIRST, or where that does not do: the half sweeps before the coarse correction. */
 static void push_start(cf_pass *p) {
   if (p->at->odd_seam) {
-    push(p, CF_PASS_CLEAR, 0);
-    push(p, CF_PASS_RED, 0);
-    push(p, CF_PASS_BLACK, 0);
+    cf_pass_push(p, CF_PASS_CLEAR, 0);
+    cf_pass_push(p, CF_PASS_RED, 0);
+    cf_pass_push(p, CF_PASS_BLACK, 0);
   } else {
-    push(p, CF_PASS_SECOND, 0);
+    cf_pass_push(p, CF_PASS_SECOND, 0);
   }
 }
 
 /* The last black half sweep, and taking the correction. */
 static void push_end(cf_pass *p, const double omega_last, const double omega_first) {
   if (p->at->odd_seam) {
-    push(p, CF_PASS_BLACK, omega_last);
-    push(p, CF_PASS_RESIDUAL, 0);
+    cf_pass_push(p, CF_PASS_BLACK, omega_last);
+    cf_pass_push(p, CF_PASS_RESIDUAL, 0);
   } else {
-    push(p, CF_PASS_LAST, omega_last);
+    cf_pass_push(p, CF_PASS_LAST, omega_last);
   }
-  push(p, CF_PASS_UPDATE, omega_first);
+  cf_pass_push(p, CF_PASS_UPDATE, omega_first);
 }
 
 /* Half sweeps over-relaxed so that `count` of them in a row, red first, damp all errors alike; the first is FIRST. */
 static void push_half_sweeps(cf_pass *p, const double jacobi, const int count, const bool finest) {
   const double j2 = jacobi * jacobi;
-  if (p->at->odd_seam) push(p, CF_PASS_CLEAR, 0);
+  if (p->at->odd_seam) cf_pass_push(p, CF_PASS_CLEAR, 0);
   double omega = 1;
   for (int v = 0; v < count; ++v) {
     if (p->at->odd_seam)
       omega = 1; /* neighbours of one colour: no such theory */
     else if (v > 0)
-      omega = v == 1 ? 1 / (1 - j2 / 2) : 1 / (1 - j2 * omega / 4);
+      omega = cf_omega_after(v, j2, omega);
     if (v == count - 1 && finest)
       push_end(p, omega, 1);
     else if (v == 1 && !p->at->odd_seam)
-      push(p, CF_PASS_SECOND, omega);
+      cf_pass_push(p, CF_PASS_SECOND, omega);
     else if (v > 1 || p->at->odd_seam)
-      push(p, v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, omega);
+      cf_pass_push(p, v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, omega);
   }
 }
 
@@ -156,22 +151,22 @@ static void correct(const cf_box_solver *f, const int l) {
     return;
   }
   push_start(&down);
-  push(&down, CF_PASS_RESTRICT, 0);
+  cf_pass_push(&down, CF_PASS_RESTRICT, 0);
   cf_wave_run(&f->wave, &down);
   correct_from(f, l + 1);
   /* The finest level's cycle gains so much that the coarse correction must be as good: a W-cycle. */
   if (!cf_level_is_solved_directly(f->level[l + 1].plain) && f->thorough) {
-    push(&again, CF_PASS_PROLONG, 0);
-    push(&again, CF_PASS_RED, 0);
-    push(&again, CF_PASS_BLACK, 1);
-    push(&again, CF_PASS_RESTRICT_RED, 0);
+    cf_pass_push(&again, CF_PASS_PROLONG, 0);
+    cf_pass_push(&again, CF_PASS_RED, 0);
+    cf_pass_push(&again, CF_PASS_BLACK, 1);
+    cf_pass_push(&again, CF_PASS_RESTRICT_RED, 0);
     cf_wave_run(&f->wave, &again);
     correct_from(f, l + 1);
   }
-  push(&up, CF_PASS_PROLONG, 0);
+  cf_pass_push(&up, CF_PASS_PROLONG, 0);
   for (int v = 0; v < (f->thorough ? COARSE_SWEEPS_W : COARSE_SWEEPS_V); ++v) {
-    push(&up, CF_PASS_RED, 0);
-    push(&up, CF_PASS_BLACK, 0);
+    cf_pass_push(&up, CF_PASS_RED, 0);
+    cf_pass_push(&up, CF_PASS_BLACK, 0);
   }
   cf_wave_run(&f->wave, &up);
 }
@@ -182,31 +177,31 @@ static void correct(const cf_box_solver *f, const int l) {
 static void push_first_part(const cf_box_solver *f, cf_pass *p) {
   if (!f->thorough) {
     push_start(p);
-    if (f->depth > 1) push(p, CF_PASS_RESTRICT, 0);
+    if (f->depth > 1) cf_pass_push(p, CF_PASS_RESTRICT, 0);
     return;
   }
-  push(p, CF_PASS_SECOND, f->omega[1]);
-  push(p, CF_PASS_RED, f->omega[2]);
-  push(p, CF_PASS_BLACK, f->omega[3]);
-  push(p, CF_PASS_RESTRICT_RED, 0);
+  cf_pass_push(p, CF_PASS_SECOND, f->omega[1]);
+  cf_pass_push(p, CF_PASS_RED, f->omega[2]);
+  cf_pass_push(p, CF_PASS_BLACK, f->omega[3]);
+  cf_pass_push(p, CF_PASS_RESTRICT_RED, 0);
 }
 
 /* Those after it, and taking the correction. */
 static void push_second_part(const cf_box_solver *f, cf_pass *p) {
-  push(p, CF_PASS_PROLONG, 0);
+  cf_pass_push(p, CF_PASS_PROLONG, 0);
   if (!f->thorough) {
-    push(p, CF_PASS_RED, 0);
+    cf_pass_push(p, CF_PASS_RED, 0);
     push_end(p, 0, 0);
     return;
   }
   if (f->varied != NULL) /* near walls the correction is not as good as elsewhere */
     for (int v = 0; v < EDGE_SWEEPS; ++v) {
-      push(p, CF_PASS_RED_EDGES, EDGE_OMEGA);
-      push(p, CF_PASS_BLACK_EDGES, EDGE_OMEGA);
+      cf_pass_push(p, CF_PASS_RED_EDGES, EDGE_OMEGA);
+      cf_pass_push(p, CF_PASS_BLACK_EDGES, EDGE_OMEGA);
     }
-  push(p, CF_PASS_RED, f->omega[4]);
-  push(p, CF_PASS_BLACK, f->omega[5]);
-  push(p, CF_PASS_RED, f->omega[6]);
+  cf_pass_push(p, CF_PASS_RED, f->omega[4]);
+  cf_pass_push(p, CF_PASS_BLACK, f->omega[5]);
+  cf_pass_push(p, CF_PASS_RED, f->omega[6]);
   push_end(p, f->omega[7], f->omega[0]);
 }
 
@@ -260,7 +255,7 @@ void cf_box_form(const cf_box_solver *f, const cf_helmholtz *A, const cf_cell b,
   cf_pass p = pass_on_finest(f, b, x);
   p.scale = it->scale;
   p.shift = it->shift;
-  push(&p, CF_PASS_FORM, f->depth == 1 ? 1 : f->thorough ? f->omega[0] : 0);
+  cf_pass_push(&p, CF_PASS_FORM, f->depth == 1 ? 1 : f->thorough ? f->omega[0] : 0);
   if (f->depth > 1) push_first_part(f, &p);
   cf_wave_run(&f->wave, &p);
   take_form_sums(f, it);

@@ -19,18 +19,12 @@
  * may be. */
 #define ROUNDED 1e-8
 #define SEEN    0.1
-/* Where half sweeps are alone: what is to be gained in one pass at most; their number; and how far they aim below what is asked. */
+/* Where half sweeps are alone: what is to be gained in one pass at most; and their number. */
 #define PASS_GAIN 1e-4
 #define LEAST     8
 #define MOST      36
-#define MARGIN    1.0
 /* r is to be within such a factor of 1. */
 #define FAR_OFF 1e4
-
-static void push(cf_pass *p, const cf_pass_stage stage, const double omega) {
-  p->omega[p->count] = (float)omega;
-  p->stage[p->count++] = stage;
-}
 
 static cf_pass pass_of(const cf_cycling *w) {
   const cf_fields *f = &w->v->fields;
@@ -53,14 +47,14 @@ static bool is_alone(const cf_cycling *w) { return w->v->fields.alone; }
 /* What comes before the coarse correction, but for the first half sweep. */
 static void push_down(const cf_cycling *w, cf_pass *p) {
   if (is_alone(w)) return;
-  push(p, CF_PASS_SECOND, OMEGA);
-  push(p, CF_PASS_RESTRICT, 1);
+  cf_pass_push(p, CF_PASS_SECOND, OMEGA);
+  cf_pass_push(p, CF_PASS_RESTRICT, 1);
 }
 
 static double first_omega(const cf_cycling *w) { return is_alone(w) ? 1 : OMEGA; }
 
 static void push_form(const cf_cycling *w, cf_pass *p) {
-  push(p, CF_PASS_FORM, first_omega(w));
+  cf_pass_push(p, CF_PASS_FORM, first_omega(w));
   push_down(w, p);
 }
 
@@ -117,7 +111,7 @@ cf_varied_sums cf_fields_form(const cf_varied *v, const cf_cell x, const cf_cell
   const cf_cycling w = {.v = v, .x = x, .b = b, .unit = 1};
   cf_pass p = pass_of(&w);
   cf_varied_set_ghosts(v, x);
-  push(&p, CF_PASS_FORM, 1);
+  cf_pass_push(&p, CF_PASS_FORM, 1);
   cf_wave_run(&v->fields.wave, &p);
   return (cf_varied_sums){sum_of(&v->fields, CF_SUM_RESIDUAL), sum_of(&v->fields, CF_SUM_B2),
                           sum_of(&v->fields, CF_SUM_X2)};
@@ -128,13 +122,14 @@ cf_varied_sums cf_fields_form(const cf_varied *v, const cf_cell x, const cf_cell
 static void push_half_sweeps(const cf_cycling *w, cf_pass *p, double *last) {
   const double J = w->v->fields.radius, J2 = J * J;
   const double per_sweep = J / (1 + sqrt(1 - J2));
-  double gain = MARGIN * sqrt(w->target / w->rr), omega = 1;
+  double gain = sqrt(w->target / w->rr), omega = 1;
   if (gain < PASS_GAIN) gain = sqrt(gain);
   const int wanted = (int)ceil(log(gain / 2) / log(CF_MAX(per_sweep, 1e-12)));
   const int count = CF_MIN(CF_MAX((wanted + 1) / 2 * 2, LEAST), MOST);
   for (int v = 1; v < count; ++v) {
-    omega = v == 1 ? 1 / (1 - J2 / 2) : 1 / (1 - J2 * omega / 4);
-    if (v + 1 < count) push(p, v == 1 ? CF_PASS_SECOND : v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, omega);
+    omega = cf_omega_after(v, J2, omega);
+    if (v + 1 < count)
+      cf_pass_push(p, v == 1 ? CF_PASS_SECOND : v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, omega);
   }
   *last = omega;
 }
@@ -144,8 +139,8 @@ static void push_up(const cf_cycling *w, cf_pass *p, double *last) {
   const cf_coupled *coarse = &w->v->level[1];
   cf_varied_correct(w->v, 1);
   cf_coupled_wrap(coarse, coarse->e);
-  push(p, CF_PASS_PROLONG, 1);
-  for (int v = 0; v < AFTER - 1; ++v) push(p, v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, OMEGA);
+  cf_pass_push(p, CF_PASS_PROLONG, 1);
+  for (int v = 0; v < AFTER - 1; ++v) cf_pass_push(p, v % 2 == 0 ? CF_PASS_RED : CF_PASS_BLACK, OMEGA);
   *last = OMEGA;
 }
 
@@ -162,8 +157,8 @@ void cf_fields_go_up(cf_cycling *w, const bool last) {
   double omega;
   cf_pass p = pass_of(w);
   (is_alone(w) ? push_half_sweeps : push_up)(w, &p, &omega);
-  push(&p, anew ? CF_PASS_BLACK : CF_PASS_LAST, omega);
-  push(&p, anew ? CF_PASS_ADD : CF_PASS_UPDATE, first_omega(w));
+  cf_pass_push(&p, anew ? CF_PASS_BLACK : CF_PASS_LAST, omega);
+  cf_pass_push(&p, anew ? CF_PASS_ADD : CF_PASS_UPDATE, first_omega(w));
   if (at_once) push_form(w, &p);
   if (!anew && !last) push_down(w, &p);
   p.sums_of_x = !anew && (last || is_alone(w) || w->v->pockets.count > 0);

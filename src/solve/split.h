@@ -74,11 +74,6 @@ static inline bool cf_split_needs_ghosts(const cf_split *s) {
   return s->has_seam && !s->wraps[0] && !s->wraps[1] && !s->wraps[2];
 }
 
-/* The row of 1/diagonal that row (j, k) uses. */
-static inline int cf_split_kind(const cf_split *s, const int j, const int k) {
-  return s->kind[1][j] * CF_SPLIT_KINDS + (s->dim == 3 ? s->kind[2][k] : 0);
-}
-
 /* Where cell i of a row lies. */
 static inline ptrdiff_t cf_split_at(const cf_split *s, const int i) {
   return (i & 1) * s->odd + (i - (i & 1)) / 2;

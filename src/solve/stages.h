@@ -86,6 +86,17 @@ typedef struct cf_pass {
   double *rows;       /* `sums` numbers of each kind of cf_pass_sum */
 } cf_pass;
 
+static inline void cf_pass_push(cf_pass *p, const cf_pass_stage stage, const double omega) {
+  p->omega[p->count] = (float)omega;
+  p->stage[p->count++] = stage;
+}
+
+/* omega of half sweep v, at least 1, after one with `omega` (1 for the first), that damp all errors alike; j2: the square of the radius
+ * of Jacobi's iteration (Golub and Varga 1961). */
+static inline double cf_omega_after(const int v, const double j2, const double omega) {
+  return v == 1 ? 1 / (1 - j2 / 2) : 1 / (1 - j2 * omega / 4);
+}
+
 /* Pieces of some rows of a plane, elements [from, to) of their halves, and a thread's own memory. */
 typedef struct cf_strip {
   int j, end; /* rows [j, end) */

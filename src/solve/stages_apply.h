@@ -39,29 +39,24 @@ CF_KERNEL void cf_clear_pad(const cf_split *s, const cf_strip *t, const cf_half 
   if (t->to == s->width && s->half[h->parity] < s->width) h->r[s->half[h->parity]] = 0;
 }
 
-/* The residual where `step` times the correction is taken that would leave `rest` of r. */
-CF_KERNEL float cf_stepped(const float step, const float r, const float rest) {
-  return step == 1 ? rest : r + step * (rest - r);
-}
-
 /* What the change of e, as stored, leaves of the residual. */
 CF_KERNEL void cf_last_half(const int dim, const int inner, const cf_half *of, const cf_strip *t,
-                            const float omega, const float step) {
+                            const float omega) {
   const cf_half h = *of;
   CF_FOR_PIECE(m, t) {
     const float residual = h.r[m] - cf_applied(dim, inner, &h, m);
     const float old = h.e[m], fresh = old + omega * h.inverse[m] * residual;
-    h.r[m] = cf_stepped(step, h.r[m], residual - h.diagonal[m] * (fresh - old));
+    h.r[m] = residual - h.diagonal[m] * (fresh - old);
     h.e[m] = fresh;
   }
 }
 
-/* r -= step A' e, then a first half sweep on it. */
+/* r -= A' e, then a first half sweep on it. */
 CF_KERNEL void cf_restart_half(const int dim, const int inner, const cf_half *of, const cf_strip *t,
-                               const float omega, const float step) {
+                               const float omega) {
   const cf_half h = *of;
   CF_FOR_PIECE(m, t) {
-    const float r = h.r[m] - step * cf_applied(dim, inner, &h, m);
+    const float r = h.r[m] - cf_applied(dim, inner, &h, m);
     h.r[m] = r;
     h.e[m] = omega * h.inverse[m] * r;
   }
@@ -75,13 +70,6 @@ CF_KERNEL double cf_sum_sixteen(const cf_sixteen *sum) {
   const cf_eight both = CF_EIGHT_OF_FLOATS(lane) + CF_EIGHT_OF_FLOATS(lane + CF_SUM_LANES);
   memcpy(wide, &both, sizeof wide);
   return cf_sum_lanes(wide);
-}
-
-/* The sum of products along a piece of a half. */
-CF_KERNEL double cf_products(const int n, const float *a, const float *b) {
-  cf_sixteen sum = {0};
-  for (int m = 0; m < n; m += CF_SPLIT_LANES) sum += CF_SIXTEEN_OF(a + m) * CF_SIXTEEN_OF(b + m);
-  return cf_sum_sixteen(&sum);
 }
 
 /* The sum of squares along a piece of both halves: along a row in single precision, beyond it in double. */
@@ -115,17 +103,6 @@ CF_KERNEL void cf_fetch_x(const cf_pass *p, const cf_strip *t, const int j) {
 }
 
 /* --- FORM --------------------------------------------------------------------------------------------- */
-
-CF_KERNEL double cf_square_sum(const int n, const double *f) {
-  cf_eight sum = {0};
-  for (int i = 0; i < n; i += CF_SUM_LANES) {
-    const cf_eight v = CF_EIGHT_OF_DOUBLES(f + i);
-    sum += v * v;
-  }
-  double lane[CF_SUM_LANES];
-  memcpy(lane, &sum, sizeof lane);
-  return cf_sum_lanes(lane);
-}
 
 /* A row from its first cell in the strip on. */
 typedef struct cf_forming {

@@ -19,8 +19,7 @@ typedef struct cf_half {
   float *e, *r;
   float *side;
   const float *lo, *hi, *inverse, *diagonal;
-  const unsigned char *faces, *held; /* on an edge segment (segments.h) */
-  ptrdiff_t y[2], z[2];              /* to the rows below and above */
+  ptrdiff_t y[2], z[2]; /* to the rows below and above */
   float lo_y, hi_y, lo_z, hi_z, alpha, coupling;
   int parity;
 } cf_half;

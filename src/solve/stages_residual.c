@@ -14,9 +14,9 @@ CF_KERNEL void last_rows(const int dim, const cf_split *s, const cf_strip *t, co
     const cf_half red = cf_half_of(dim, s, j, t->k, 0), black = cf_half_of(dim, s, j, t->k, 1);
     cf_half_set_images(s, t, &black, 1);
     if (cf_half_is_inner(dim, &black))
-      cf_last_half(dim, 1, &black, t, omega, 1);
+      cf_last_half(dim, 1, &black, t, omega);
     else
-      cf_last_half(dim, 0, &black, t, omega, 1);
+      cf_last_half(dim, 0, &black, t, omega);
     cf_clear_pad(s, t, &black);
     cf_half_join(s, t, &black);
     cf_half_set_images(s, t, &red, 1);
@@ -49,9 +49,9 @@ CF_KERNEL void update_rows(const int dim, const cf_pass *p, const cf_strip *t, c
     } else {
       cf_half_set_images(s, t, &black, 0);
       if (cf_half_is_inner(dim, &red))
-        cf_restart_half(dim, 1, &red, t, omega, 1);
+        cf_restart_half(dim, 1, &red, t, omega);
       else
-        cf_restart_half(dim, 0, &red, t, omega, 1);
+        cf_restart_half(dim, 0, &red, t, omega);
       cf_clear_pad(s, t, &red);
       cf_half_join(s, t, &red);
     }
